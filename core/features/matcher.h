@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// From features to landmark matches, in two ways: guided, where a predicted pose says where in the image a landmark
+// should be; and against candidates, where only the descriptor is known. Landmarks may have several descriptors.
+// Nothing here knows the map: the caller says what a candidate descriptor belongs to.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/features/descriptor.h"
+
+namespace camloc {
+
+struct Match {
+  std::int32_t feature = -1;    ///< index into Features
+  std::int32_t landmark = -1;   ///< the caller's id
+  std::uint16_t distance = 0;   ///< Hamming distance
+  std::uint16_t second = 257;   ///< distance of the best rival: another landmark (candidates) or feature (guided)
+};
+
+/// Buckets of keypoints for window queries. Allocates at construction only.
+class FeatureGrid {
+ public:
+  FeatureGrid(int width, int height, int max_features, int cell_px = 24);
+  /// Refills the buckets; features beyond max_features are ignored.
+  void assign(std::span<const Keypoint> keypoints);
+  [[nodiscard]] int columns() const { return columns_; }
+  [[nodiscard]] int rows() const { return rows_; }
+  [[nodiscard]] int cell_px() const { return cell_px_; }
+  /// Feature indices in one bucket.
+  [[nodiscard]] std::span<const std::int32_t> bucket(int column, int row) const;
+
+ private:
+  int columns_, rows_, cell_px_, max_features_;
+  std::vector<std::int32_t> bucket_begin_, feature_;
+};
+
+/// A landmark where the predicted pose puts it in the image.
+struct ProjectedLandmark {
+  std::int32_t landmark = -1;
+  float u = 0, v = 0;             ///< predicted pixel
+  float radius_px = 8;            ///< search window
+  std::uint8_t min_level = 0, max_level = 7;   ///< pyramid levels it may appear on
+  std::uint32_t first_descriptor = 0, num_descriptors = 1;  ///< range in the descriptors given to match()
+};
+
+struct GuidedMatcherOptions {
+  int max_distance = 64;      ///< of 256 bits
+  double max_ratio = 0.9;     ///< best / second best feature in the window on a nearby level; 1 = off
+  int max_matches = 2000;     ///< buffer size
+};
+
+/// Best feature in the window of each projected landmark; a feature claimed by several landmarks goes to the closest
+/// descriptor. Not thread-safe; allocates at construction only.
+class GuidedMatcher {
+ public:
+  GuidedMatcher(const GuidedMatcherOptions& options, int max_features);
+  /// Matches ordered by feature index; valid until the next call.
+  std::span<const Match> match(const Features& features, const FeatureGrid& grid, std::span<const ProjectedLandmark> landmarks,
+                               std::span<const Descriptor> descriptors);
+
+ private:
+  GuidedMatcherOptions options_;
+  std::vector<Match> best_of_feature_;
+  std::vector<Match> matches_;
+};
+
+/// Candidate descriptors gathered from the map, structure of arrays. Capacity is fixed at construction.
+struct CandidateSet {
+  explicit CandidateSet(std::size_t capacity);
+  bool add(const Descriptor& descriptor, std::int32_t landmark, float angle_rad);  ///< false when full
+  void clear() { size = 0; }
+
+  std::size_t size = 0;
+  std::vector<Descriptor> descriptors;
+  std::vector<std::int32_t> landmarks;
+  std::vector<float> angles_rad;   ///< orientation of the landmark's feature where it was mapped
+};
+
+struct CandidateMatcherOptions {
+  int max_distance = 64;
+  double max_ratio = 0.9;             ///< best / best of another landmark; 1 = off
+  bool is_mutual = true;              ///< the feature must also be the landmark's best
+  double max_rotation_deviation_rad = 0.5;  ///< from the dominant rotation between mapped and seen orientation; <= 0 = off
+};
+
+/// Best candidate of each feature. The rival of the ratio test is the best descriptor of another landmark: a landmark's
+/// own further appearances never count against it. Not thread-safe; allocates at construction only.
+class CandidateMatcher {
+ public:
+  CandidateMatcher(const CandidateMatcherOptions& options, int max_features, std::size_t max_candidates);
+  /// Matches ordered by feature index; valid until the next call.
+  std::span<const Match> match(const Features& features, const CandidateSet& candidates);
+
+ private:
+  CandidateMatcherOptions options_;
+  std::vector<Match> matches_;
+};
+
+}  // namespace camloc

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Index of a recorded RGB-D sequence on disk: TUM RGB-D (rgb.txt, depth.txt, groundtruth.txt) or 7-Scenes
+// (frame-NNNNNN.color.*, .depth.png, .pose.txt). Reads no pixels.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/geometry/rigid3.h"
+
+namespace camloc {
+
+struct SequenceFrame {
+  std::uint64_t index = 0;       ///< position in the whole recording, before any selection
+  std::int64_t stamp_ns = 0;
+  std::string color_path;
+  std::string depth_path;        ///< empty: no depth within the association window
+};
+
+struct StampedPose {
+  std::int64_t stamp_ns = 0;
+  Rigid3 T_world_camera;         ///< as recorded; nearest rotation taken
+};
+
+struct Sequence {
+  std::string folder;
+  std::string layout;            ///< "tum" or "7scenes"
+  std::vector<SequenceFrame> frames;   ///< ascending in time
+};
+
+/// Errors name file and line. Unsorted stamps, missing images and an empty folder are errors; a colour image without a
+/// depth image within `max_gap_s` is not.
+[[nodiscard]] Result<Sequence> read_sequence(const std::string& folder, double max_gap_s = 0.02);
+
+/// Poses recorded with the sequence (groundtruth.txt or .pose.txt), interpolated at the frame's stamp where the neighbours
+/// are at most 0.1 s apart; nullopt where there is none. Same length as sequence.frames.
+[[nodiscard]] Result<std::vector<std::optional<Rigid3>>> read_embedded_poses(const Sequence& sequence);
+
+/// Trajectory file in TUM format: "timestamp tx ty tz qx qy qz qw", seconds, '#' comments.
+[[nodiscard]] Result<std::vector<StampedPose>> read_tum_trajectory(const std::string& path);
+[[nodiscard]] std::string format_tum_line(std::int64_t stamp_ns, const Rigid3& T_map_camera);
+
+/// Pose at a time from an ordered trajectory: interpolated between neighbours at most `max_gap_s` apart, or the nearest
+/// within 0.5 ms.
+[[nodiscard]] std::optional<Rigid3> pose_at(const std::vector<StampedPose>& trajectory, std::int64_t stamp_ns, double max_gap_s = 0.1);
+
+}  // namespace camloc
