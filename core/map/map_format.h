@@ -1,15 +1,124 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The .cmap file. (To be documented byte by byte here.)
+// The .cmap file, byte by byte.
+//
+// Constraints
+//   - A headset maps the file and localizes: no parsing, no pointers, no second copy of the large arrays.
+//   - At most 60 bytes a landmark all in, because the descriptors alone are 35 (1.1 of 32 bytes each).
+//   - Any damaged byte is noticed at open; a map never turns silently into another one.
+//   - The same map gives the same bytes, so that files can be compared and identified by a hash.
+//
+// Rejected
+//   - FlatBuffers, Protocol Buffers, HDF5, SQLite: a parser or a library for what is eleven arrays; alignment of 32-byte
+//     descriptors is not theirs to promise.
+//   - Compression: descriptors are noise to a compressor (under 3 %), and a compressed map cannot be mapped.
+//   - float positions: 16 bits of a 4 m cube are 0.06 mm, the sensor has millimetres.
+//   - An index of first descriptors: a running sum of num_descriptors at open costs 10 us and saves 4 bytes a landmark.
+//   - 32-bit keyframe lists: steps between sorted indices are mostly below 128, one byte instead of four.
+//
+// Layout. Little-endian, IEEE 754, packed by hand: no record below has padding of its own.
+//
+//   0      FileHeader, 64 bytes. Its layout and its hash are the same in every version, so that a damaged header and a
+//          newer version can be told apart.
+//   64     kNumSections SectionRecord of 32 bytes, in the order of SectionId, then zeros up to a multiple of 64.
+//   ...    The sections in the same order, without gaps. Each starts at a multiple of 64 and is followed by zeros up to
+//          the next. Nothing comes after the last.
+//
+// Hashes are XXH3 64-bit with seed 0. header_hash covers the header before it; map_id covers the section table with its
+// zeros; the hash of a section covers its elements and the zeros after them. So every byte of the file is covered.
+//
+// Sections (element, count)
+//   meta                MetaRecord, 1
+//   submaps             SubmapRecord, num_submaps; each at least one landmark
+//   landmarks           LandmarkRecord, num_landmarks; ordered by sub-map, within one along a Morton curve
+//   descriptors         32 bytes, num_descriptors; those of landmark 0 first, at least one each; bit order of cv::ORB
+//   keyframes           KeyframeRecord, num_keyframes <= 65535
+//   keyframe_lists      bytes; per keyframe its landmark indices, ascending: the first index, then the steps to the next,
+//                       each as base-128 digits, lowest first, high bit set on all but the last digit (LEB128)
+//   words               32 bytes, num_words; the vocabulary
+//   word_begin          u32, num_words + 1; entries of word w are word_begin[w] .. word_begin[w + 1]
+//   inverted_keyframes  u16, num_entries; keyframes that contain the word, ascending within a word
+//   inverted_weights    u8, num_entries; tf-idf of the word in that keyframe, 1..255 relative to the keyframe's norm
+//   wcs                 WcsRecord, 0 or 1
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace camloc::map_format {
 
 inline constexpr std::uint32_t kVersion = 1;
+/// "CMAP", then bytes that a transfer in text mode would change, as in PNG.
+inline constexpr std::array<char, 8> kMagic = {'C', 'M', 'A', 'P', '\r', '\n', '\x1a', '\n'};
+inline constexpr std::uint32_t kByteOrder = 0x01020304;         ///< as a machine of the writer's byte order reads it
+inline constexpr std::uint32_t kOtherByteOrder = 0x04030201;
+inline constexpr std::uint64_t kAlignment = 64;
+inline constexpr std::uint32_t kMaxKeyframes = 65535;           ///< the inverted file names them with 16 bits
+
+struct FileHeader {
+  std::array<char, 8> magic;
+  std::uint32_t byte_order;
+  std::uint32_t version;
+  std::uint64_t file_bytes;
+  std::uint64_t map_id;        ///< hash of the section table, which holds the hashes of all content
+  std::uint32_t num_sections;
+  std::array<std::uint32_t, 5> reserved;  ///< zero
+  std::uint64_t header_hash;   ///< of the 56 bytes before
+};
+static_assert(sizeof(FileHeader) == 64);
+
+enum class SectionId : std::uint32_t {
+  kMeta, kSubmaps, kLandmarks, kDescriptors, kKeyframes, kKeyframeLists, kWords, kWordBegin, kInvertedKeyframes, kInvertedWeights, kWcs,
+};
+inline constexpr std::uint32_t kNumSections = 11;
+inline constexpr std::array<const char*, kNumSections> kSectionNames = {
+    "meta", "submaps", "landmarks", "descriptors", "keyframes", "keyframe_lists",
+    "words", "word_begin", "inverted_keyframes", "inverted_weights", "wcs"};
+
+struct SectionRecord {
+  SectionId id;
+  std::uint32_t element_bytes;
+  std::uint64_t offset;        ///< from the start of the file, multiple of 64
+  std::uint64_t num_elements;
+  std::uint64_t hash;
+};
+static_assert(sizeof(SectionRecord) == 32);
+
+/// p_a = rotation * p_b + translation.
+struct TransformRecord {
+  std::array<double, 4> rotation_wxyz;  ///< unit quaternion
+  std::array<double, 3> translation_m;
+};
+static_assert(sizeof(TransformRecord) == 56);
+
+/// See Intrinsics.
+struct IntrinsicsRecord {
+  std::int32_t width, height;
+  std::uint32_t lens;          ///< 0 pinhole, 1 Brown-Conrady, 2 equidistant
+  std::uint32_t reserved;      ///< zero
+  double fx, fy, cx, cy;       ///< pixels
+  std::array<double, 5> distortion;
+};
+static_assert(sizeof(IntrinsicsRecord) == 88);
+
+/// Facts about the whole map. Texts are UTF-8, at most 63 bytes, filled up with zeros.
+struct MetaRecord {
+  std::array<char, 64> name;
+  std::array<char, 64> camera_name;
+  IntrinsicsRecord color;
+  IntrinsicsRecord depth;
+  TransformRecord T_color_depth;
+  double depth_unit_m, min_depth_m, max_depth_m;
+  double depth_noise_constant_m, depth_noise_quadratic_per_m;
+  std::uint32_t is_depth_registered;        ///< 0 or 1
+  std::uint32_t poses_are_of_depth_camera;  ///< 0 or 1
+  double pose_sigma_m, pose_sigma_rad;      ///< see MapData
+  float orb_scale_factor;
+  std::uint32_t orb_num_levels;
+};
+static_assert(sizeof(MetaRecord) == 432);
 
 /// A cube of the map with its own origin: landmark coordinates are 16-bit fractions of its side.
 /// p_map = origin + extent * q / 65535. Its landmarks are contiguous.
@@ -19,8 +128,9 @@ struct SubmapRecord {
   std::uint32_t first_landmark;
   std::uint32_t num_landmarks;
 };
+static_assert(sizeof(SubmapRecord) == 24);
 
-/// Everything about a landmark but its descriptors: 16 bytes.
+/// Everything about a landmark but its descriptors. The codes are defined in landmark_codes.h.
 struct LandmarkRecord {
   std::array<std::uint16_t, 3> position;   ///< fraction of its sub-map's extent
   std::array<std::uint8_t, 2> direction;   ///< octahedral code of the mean direction landmark -> camera, axes of `map`
@@ -29,17 +139,25 @@ struct LandmarkRecord {
   std::uint8_t max_reference;    ///< distance d * scale_factor^level is where it would be seen on level 0; log code
   std::uint8_t angle;            ///< keypoint orientation where the first descriptor was seen, 2 pi / 256
   std::uint8_t num_observations; ///< frames that saw it, saturating
-  std::uint8_t num_descriptors;
-  std::uint16_t position_sigma_mm;  ///< scatter of its observations
+  std::uint8_t num_descriptors;  ///< at least 1
+  std::uint16_t position_sigma_mm;  ///< scatter of its observations, saturating
 };
 static_assert(sizeof(LandmarkRecord) == 16);
 
 /// One mapped view. Keyframes are the minimum set that covers all landmarks (greedy set cover).
 struct KeyframeRecord {
-  std::array<float, 4> rotation_wxyz;   ///< of T_map_camera
+  std::array<float, 4> rotation_wxyz;   ///< of T_map_camera, unit quaternion
   std::array<float, 3> position_m;
-  std::uint32_t first_landmark_entry;   ///< into the keyframe landmark lists
+  std::uint32_t first_list_byte;        ///< into keyframe_lists; the list ends where the next one begins
   std::uint32_t num_landmark_entries;
 };
+static_assert(sizeof(KeyframeRecord) == 36);
+
+/// Where the map lies in the world.
+struct WcsRecord {
+  TransformRecord T_wcs_map;
+  std::array<double, 36> covariance;    ///< of pose_error(), metres then radians, axes of `wcs`; symmetric, row by row
+};
+static_assert(sizeof(WcsRecord) == 344);
 
 }  // namespace camloc::map_format

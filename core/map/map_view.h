@@ -2,13 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Read access to a .cmap file through a memory mapping. Everything is validated once in open(); after that there are only
-// indexes. Accessors clamp every index that was read from the file, so that a file overwritten in place while mapped
-// gives wrong landmarks (which verification rejects) but never a wild read.
+// indexes. Tables that hold indices into other tables (sub-maps, keyframes, first descriptors, words) are copied at open,
+// a few bytes a landmark, and what stays in the file is clamped where it is used: a file overwritten in place while
+// mapped gives wrong landmarks (which verification rejects) but never a wild read.
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -26,6 +29,7 @@ struct MapInfo {
   std::uint64_t file_bytes = 0;
   std::uint32_t version = 0;
   std::uint32_t num_submaps = 0, num_landmarks = 0, num_descriptors = 0, num_keyframes = 0, num_words = 0;
+  std::uint32_t max_keyframe_landmarks = 0;  ///< length of the longest keyframe list, to size buffers
   float orb_scale_factor = 1.2F;
   std::uint32_t orb_num_levels = 8;
   double pose_sigma_m = 0, pose_sigma_rad = 0;  ///< see MapData
@@ -46,6 +50,8 @@ class MapView {
   [[nodiscard]] const MapInfo& info() const;
   /// True once a page of the file could not be read any more (truncated while mapped); see mapping_guard.h.
   [[nodiscard]] bool is_damaged() const;
+  /// True when the path no longer names the bytes that were opened: replaced, removed, or written to. One stat().
+  [[nodiscard]] bool is_stale() const;
 
   [[nodiscard]] std::span<const map_format::SubmapRecord> submaps() const;
   [[nodiscard]] std::span<const map_format::LandmarkRecord> landmarks() const;
@@ -64,20 +70,30 @@ class MapView {
   }
   /// Unit vector from the landmark towards the cameras that mapped it.
   [[nodiscard]] static Eigen::Vector3f direction(const map_format::LandmarkRecord& landmark);
-  [[nodiscard]] static float view_cosine(const map_format::LandmarkRecord& landmark) { return static_cast<float>(landmark.view_cosine) / 127.5F - 1.0F; }
+  [[nodiscard]] static float view_cosine(const map_format::LandmarkRecord& landmark) {
+    return static_cast<float>(landmark.view_cosine) / 127.5F - 1.0F;
+  }
   /// Reference distance of the 8-bit log code, metres.
   [[nodiscard]] static float reference_m(std::uint8_t code);
-  [[nodiscard]] static float angle_rad(const map_format::LandmarkRecord& landmark) { return static_cast<float>(landmark.angle) * (6.28318530718F / 256.0F); }
+  [[nodiscard]] static float angle_rad(const map_format::LandmarkRecord& landmark) {
+    return static_cast<float>(landmark.angle) * (6.28318530718F / 256.0F);
+  }
 
   [[nodiscard]] std::uint32_t first_descriptor(std::uint32_t landmark) const;
+  /// Use this and not LandmarkRecord::num_descriptors, which nobody checks after open.
   [[nodiscard]] std::uint32_t num_descriptors(std::uint32_t landmark) const;
+  [[nodiscard]] std::span<const Descriptor> landmark_descriptors(std::uint32_t landmark) const;
 
   [[nodiscard]] Rigid3 keyframe_pose(std::uint32_t keyframe) const;  ///< T_map_camera
-  [[nodiscard]] std::span<const std::uint32_t> keyframe_landmarks(std::uint32_t keyframe) const;
+  /// Unpacks the landmarks of a keyframe, ascending, into `out` and returns how many; stops where `out` is full
+  /// (MapInfo::max_keyframe_landmarks always suffices).
+  [[nodiscard]] std::size_t keyframe_landmarks(std::uint32_t keyframe, std::span<std::uint32_t> out) const;
 
-  /// Inverted file: keyframes that contain a word, and their weights, same length.
+  /// Inverted file: keyframes that contain a word, and their weights, same length. These stay in the file: whoever
+  /// indexes with a keyframe from here compares it with num_keyframes first.
   [[nodiscard]] std::span<const std::uint16_t> word_keyframes(std::uint32_t word) const;
   [[nodiscard]] std::span<const std::uint8_t> word_weights(std::uint32_t word) const;
+  /// log(1 + num_keyframes / keyframes with the word): positive even in a map of one keyframe; 0 for an unused word.
   [[nodiscard]] float word_idf(std::uint32_t word) const;
 
  private:

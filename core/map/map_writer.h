@@ -14,11 +14,16 @@
 
 namespace camloc {
 
-/// The bytes of the file. Landmarks are reordered by sub-map; keyframe lists follow. Deterministic.
-/// Errors: kInvalid when the data contradict themselves (index out of range, no descriptor, non-finite, empty).
-[[nodiscard]] Result<std::vector<std::byte>> serialize_map(const MapData& map);
+struct MapWriteOptions {
+  double submap_m = 4.0;  ///< side of a sub-map's cube; 4 m give positions of 0.06 mm
+};
+
+/// The bytes of the file. Landmarks are reordered by sub-map; keyframe lists follow. Deterministic. A camera name of more
+/// than 63 bytes is cut.
+/// Errors: kInvalid when the data contradict themselves (index out of range, no descriptor, non-finite, no landmark).
+[[nodiscard]] Result<std::vector<std::byte>> serialize_map(const MapData& map, const MapWriteOptions& options = {});
 
 /// Errors: those of serialize_map, and kIo (disk full, permission), after which `path` is untouched.
-[[nodiscard]] Status write_map(const MapData& map, const std::string& path);
+[[nodiscard]] Status write_map(const MapData& map, const std::string& path, const MapWriteOptions& options = {});
 
 }  // namespace camloc
