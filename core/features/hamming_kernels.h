@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Inside of hamming.cc: one table of functions per instruction set. Everything here gives the same numbers for every
+// table; the tables differ in speed only.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/features/descriptor.h"
+#include "core/features/hamming.h"
+
+namespace camloc::hamming {
+
+/// The two nearest train descriptors of a query, as keys distance << 32 | index: the order of keys is the order by
+/// distance, then by index, whichever order the candidates were seen in.
+struct TopTwo {
+  std::uint64_t best = kNone;
+  std::uint64_t second = kNone;
+
+  static constexpr std::uint64_t kNone = std::uint64_t{257} << 32;
+
+  void add(std::uint64_t key) {
+    if (key < best) {
+      second = best;
+      best = key;
+    } else if (key < second) {
+      second = key;
+    }
+  }
+};
+
+inline std::uint64_t make_key(std::uint32_t distance, std::uint32_t index) {
+  return std::uint64_t{distance} << 32 | index;
+}
+
+/// Most queries one call of nearest() takes; bounds the state the kernels hold on the stack.
+inline constexpr std::size_t kMaxQueriesPerCall = 64;
+
+struct Kernels {
+  int (*distance)(const Descriptor& a, const Descriptor& b);
+  void (*distances)(const Descriptor& query, const Descriptor* train, std::size_t num_train, std::uint16_t* distances);
+  /// Adds all of `train` to top[0 .. num_queries); num_queries <= kMaxQueriesPerCall.
+  void (*nearest)(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train,
+                  TopTwo* top);
+};
+
+/// Loops over pairs with a distance function: the kernels that have nothing better, and the tails of those that have.
+template <typename Distance>
+inline void nearest_by_pairs(const Descriptor* queries, std::size_t num_queries, const Descriptor* train,
+                             std::size_t begin, std::size_t end, TopTwo* top, Distance distance) {
+  for (std::size_t q = 0; q < num_queries; ++q)
+    for (std::size_t i = begin; i < end; ++i)
+      top[q].add(make_key(static_cast<std::uint32_t>(distance(queries[q], train[i])), static_cast<std::uint32_t>(i)));
+}
+
+extern const Kernels kScalarKernels;
+#if defined(__x86_64__)
+extern const Kernels kPopcntKernels;
+extern const Kernels kAvx2Kernels;
+extern const Kernels kAvx512Kernels;
+#elif defined(__aarch64__)
+extern const Kernels kNeonKernels;
+#endif
+
+/// The table of a kernel that is available on this processor.
+const Kernels& kernels_of(HammingKernel kernel);
+/// The table of the fastest kernel.
+const Kernels& best_kernels();
+
+/// Nearest and second nearest with both indices, for callers that care whom the second belongs to.
+void nearest_two(const Kernels& kernels, const Descriptor* queries, std::size_t num_queries, const Descriptor* train,
+                 std::size_t num_train, TopTwo* top);
+
+}  // namespace camloc::hamming
