@@ -17,6 +17,8 @@ struct Correspondences {
   bool add(float x_normalized, float y_normalized, float x_map, float y_map, float z_map, float depth_m,
            float sigma_px, float rank, std::int32_t feature, std::int32_t landmark);
   void clear() { size_ = 0; }
+  /// Forgets all pairs beyond the first `count`.
+  void truncate(std::size_t count) { size_ = count < size_ ? count : size_; }
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] std::size_t capacity() const { return x.size(); }
   /// Orders all pairs by rank, best (smallest) first; stable, without allocation.
