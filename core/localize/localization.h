@@ -67,4 +67,11 @@ struct Localization {
   std::array<std::int64_t, kNumStages> stage_ns{};  ///< zero when no clock was given
 };
 
+/// Health of the calibration, gathered over frames.
+struct CalibrationHealth {
+  bool is_suspect = false;      ///< the assumed focal length does not fit the map
+  double focal_scale = 1;       ///< true / assumed, median of the recent frames
+  std::uint32_t num_frames = 0; ///< that took part
+};
+
 }  // namespace camloc

@@ -6,12 +6,18 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 
 #include "core/base/frame.h"
 #include "core/features/orb_extractor.h"
 #include "core/geometry/camera.h"
+#include "core/localize/calibration_monitor.h"
+#include "core/localize/global_search.h"
 #include "core/localize/localization.h"
+#include "core/localize/motion_model.h"
+#include "core/localize/observations.h"
+#include "core/localize/pose_estimator.h"
+#include "core/localize/stage_timer.h"
+#include "core/localize/verification.h"
 #include "core/map/map_view.h"
 
 namespace camloc {
@@ -24,28 +30,48 @@ struct LocalizerOptions {
   std::int64_t (*now_ns)() = nullptr;       ///< monotonic clock for stage times; core itself reads none
 };
 
-/// Health of the calibration, gathered over frames.
-struct CalibrationHealth {
-  bool is_suspect = false;      ///< the assumed focal length does not fit the map
-  double focal_scale = 1;       ///< true / assumed, median of the recent frames
-  std::uint32_t num_frames = 0; ///< that took part
-};
-
 /// Not thread-safe. `map` must outlive the localizer. Allocates at construction only.
 class Localizer {
  public:
   Localizer(const MapView& map, const RgbdCamera& camera, const LocalizerOptions& options);
-  ~Localizer();
 
   /// The reference stays valid until the next call.
   const Localization& process(const Frame& frame);
   /// Forgets the last pose.
   void reset();
-  [[nodiscard]] const CalibrationHealth& calibration() const;
+  [[nodiscard]] const CalibrationHealth& calibration() const { return calibration_.health(); }
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  /// A hypothesis together with the verdict on it.
+  struct Candidate {
+    PoseHypothesis hypothesis;
+    double margin = 1;
+    bool is_tracked = false;
+    Reason reason = Reason::kNotStarted;  ///< kNone: verified
+  };
+
+  void begin(const Frame& frame);
+  [[nodiscard]] Candidate track(const Frame& frame);
+  [[nodiscard]] Candidate search_globally(const Frame& frame);
+  [[nodiscard]] bool is_confirmed(const Frame& frame, const Rigid3& T_map_camera);
+  const Localization& accept(const Frame& frame, const Candidate& candidate);
+  const Localization& decline(const Frame& frame, const Candidate& candidate);
+  const Localization& finish(const Candidate& candidate);
+  [[nodiscard]] Matrix6d with_map_uncertainty(const Matrix6d& covariance) const;
+  [[nodiscard]] bool is_recent(std::int64_t stamp_ns, std::int64_t max_age_ns) const;
+
+  const MapView* map_;
+  LocalizerOptions options_;
+  StageTimer timer_;
+  FrameObservations observations_;
+  PoseEstimator estimator_;
+  GlobalSearch global_search_;
+  MotionModel motion_;
+  MotionModel unconfirmed_;   ///< the last implausible fix: a second one nearby confirms it
+  CalibrationMonitor calibration_;
+  VerificationOptions verification_;
+  double focal_px_;
+  Localization result_;
 };
 
 }  // namespace camloc

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Watches the focal length that frame after frame asks for. The map is metric and so is measured depth, so a wrong focal
+// length shows; peers localize half a metre off without a word.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/localize/localization.h"
+
+namespace camloc {
+
+struct CalibrationMonitorOptions {
+  double suspect_deviation = 0.035;   ///< of the median from 1
+  std::uint32_t min_frames = 8;
+  double max_sigma = 0.03;            ///< less certain frames take no part
+};
+
+class CalibrationMonitor {
+ public:
+  explicit CalibrationMonitor(const CalibrationMonitorOptions& options) : options_(options) {}
+  void add(double focal_scale, double sigma);
+  [[nodiscard]] const CalibrationHealth& health() const { return health_; }
+
+ private:
+  static constexpr std::uint32_t kWindow = 31;
+  CalibrationMonitorOptions options_;
+  std::array<double, kWindow> recent_{};
+  CalibrationHealth health_;
+};
+
+}  // namespace camloc

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/localize/motion_model.h"
+
+#include <cmath>
+
+namespace camloc {
+namespace {
+
+double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
+
+/// Slack for what the poses themselves may be off.
+constexpr double kPositionSlack = 0.25;
+constexpr double kRotationSlack = 0.2;
+
+}  // namespace
+
+void MotionModel::add_fix(std::int64_t stamp_ns, const Rigid3& T_map_camera, const Matrix6d& covariance, bool is_continuous) {
+  const std::int64_t elapsed_ns = stamp_ns - stamp_ns_;
+  has_velocity_ = is_continuous && has_fix_ && elapsed_ns > 0 && elapsed_ns <= options_.max_velocity_age_ns;
+  if (has_velocity_) {
+    const Rigid3 T_last_now = T_map_camera_.inverse() * T_map_camera;
+    velocity_camera_m_per_s_ = T_last_now.translation / seconds(elapsed_ns);
+    turn_camera_rad_per_s_ = log_so3(T_last_now.rotation) / seconds(elapsed_ns);
+  }
+  has_fix_ = true;
+  stamp_ns_ = stamp_ns;
+  T_map_camera_ = T_map_camera;
+  covariance_ = covariance;
+}
+
+Rigid3 MotionModel::predict(std::int64_t stamp_ns) const {
+  if (!has_velocity_) return T_map_camera_;
+  const double dt = std::min(seconds(stamp_ns - stamp_ns_), seconds(options_.max_velocity_age_ns));
+  return T_map_camera_ * Rigid3{exp_so3(turn_camera_rad_per_s_ * dt), velocity_camera_m_per_s_ * dt};
+}
+
+Matrix6d MotionModel::predict_covariance(std::int64_t stamp_ns) const {
+  const double dt = std::max(0.0, seconds(stamp_ns - stamp_ns_));
+  const double factor = has_velocity_ ? 1.0 : 3.0;
+  Matrix6d covariance = covariance_;
+  const double position = factor * options_.speed_change_m_per_s * dt;
+  const double rotation = factor * options_.turn_change_rad_per_s * dt;
+  covariance.diagonal().head<3>().array() += position * position;
+  covariance.diagonal().tail<3>().array() += rotation * rotation;
+  return covariance;
+}
+
+bool MotionModel::is_plausible(std::int64_t stamp_ns, const Rigid3& T_map_camera) const {
+  if (!has_fix_) return true;
+  const double dt = std::abs(seconds(stamp_ns - stamp_ns_));
+  const double distance = (T_map_camera.translation - T_map_camera_.translation).norm();
+  const double angle = rotation_distance_rad(T_map_camera.rotation, T_map_camera_.rotation);
+  return distance <= options_.max_speed_m_per_s * dt + kPositionSlack && angle <= options_.max_turn_rad_per_s * dt + kRotationSlack;
+}
+
+}  // namespace camloc

@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/localize/pose_estimator.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace camloc {
+namespace {
+
+constexpr int kSpreadColumns = 8;
+constexpr int kSpreadRows = 6;
+/// The focal length is fitted to pairs this much farther off than inliers: a wrong one moves them.
+constexpr double kFocalReach = 3.0;
+constexpr int kMinPairs = 6;
+
+PnpRansacOptions sized(PnpRansacOptions options, int max_pairs) {
+  options.max_pairs = max_pairs;
+  return options;
+}
+
+}  // namespace
+
+PoseEstimator::PoseEstimator(const MapView& map, const RgbdCamera& camera, const OrbOptions& orb, const PoseEstimatorOptions& options,
+                             StageTimer* timer)
+    : map_(&map),
+      focal_px_(camera.color.mean_focal_px()),
+      width_(camera.color.width),
+      height_(camera.color.height),
+      options_(options),
+      local_(map, camera.color, options.local),
+      guided_(options.guided, orb.num_features),
+      ransac_(sized(options.ransac, options.max_ransac_pairs)),
+      pairs_(static_cast<std::size_t>(orb.num_features)),
+      inlier_mask_(static_cast<std::size_t>(orb.num_features)),
+      timer_(timer) {
+  options_.refinement.depth_noise = camera.depth_noise;
+}
+
+PoseHypothesis PoseEstimator::from_matches(const FrameObservations& frame, std::span<const Match> matches, std::uint64_t seed) {
+  PoseHypothesis hypothesis;
+  hypothesis.num_matches = static_cast<std::uint32_t>(matches.size());
+  fill_pairs(frame, matches, static_cast<std::size_t>(options_.max_ransac_pairs));
+  const PnpRansacResult found = ransac_.estimate(pairs_, focal_px_, seed);
+  if (found.is_found) {
+    const PoseRefinementResult refined = refine_pose(pairs_, found.T_map_camera, focal_px_, options_.refinement, &inlier_mask_);
+    if (refined.is_converged) summarize(frame, refined, &hypothesis);
+  }
+  timer_->finish(Stage::kEstimate);
+  return hypothesis;
+}
+
+std::span<const Match> PoseEstimator::match_around(const FrameObservations& frame, const Rigid3& T_map_camera, float radius_px) {
+  const auto visible = local_.project(T_map_camera, radius_px);
+  num_visible_ = static_cast<std::uint32_t>(visible.size());
+  const auto matches = guided_.match(frame.features(), frame.grid(), visible, map_->descriptors());
+  timer_->finish(Stage::kMatch);
+  return matches;
+}
+
+PoseHypothesis PoseEstimator::look_again(const FrameObservations& frame, const PoseHypothesis& hypothesis) {
+  PoseHypothesis again;
+  const auto matches = match_around(frame, hypothesis.T_map_camera, options_.guided_radius_px);
+  again.num_matches = static_cast<std::uint32_t>(matches.size());
+  again.num_visible = num_visible_;
+  fill_pairs(frame, matches, pairs_.capacity());
+  if (pairs_.size() < kMinPairs) return again;
+  const PoseRefinementResult refined = refine_pose(pairs_, hypothesis.T_map_camera, focal_px_, options_.refinement, &inlier_mask_);
+  if (refined.is_converged) {
+    summarize(frame, refined, &again);
+    measure_focal_scale(&again);
+  }
+  timer_->finish(Stage::kEstimate);
+  return again;
+}
+
+void PoseEstimator::fill_pairs(const FrameObservations& frame, std::span<const Match> matches, std::size_t limit) {
+  pairs_.clear();
+  for (const Match& match : matches) {
+    const auto i = static_cast<std::size_t>(match.feature);
+    const Eigen::Vector3f p_map = map_->position_m(static_cast<std::uint32_t>(match.landmark));
+    pairs_.add(frame.x(i), frame.y(i), p_map.x(), p_map.y(), p_map.z(), frame.depth_m(i), frame.sigma_px(i),
+               static_cast<float>(match.distance), match.feature, match.landmark);
+  }
+  pairs_.sort_by_rank();
+  pairs_.truncate(limit);
+}
+
+void PoseEstimator::summarize(const FrameObservations& frame, const PoseRefinementResult& refined, PoseHypothesis* hypothesis) const {
+  hypothesis->is_found = true;
+  hypothesis->T_map_camera = refined.T_map_camera;
+  hypothesis->covariance = refined.covariance;
+  hypothesis->num_inliers = static_cast<std::uint32_t>(refined.num_inliers);
+  hypothesis->num_with_depth = static_cast<std::uint32_t>(refined.num_with_depth);
+  hypothesis->depth_agreement = refined.num_with_depth == 0 ? 1.0 : static_cast<double>(refined.num_depth_inliers) / refined.num_with_depth;
+  hypothesis->mean_relative_depth_error = refined.mean_relative_depth_error;
+  hypothesis->rms_px = refined.rms_px;
+
+  std::uint64_t occupied = 0;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    if (inlier_mask_[i] == 0) continue;
+    const Keypoint& keypoint = frame.features().keypoints[static_cast<std::size_t>(pairs_.feature[i])];
+    const int column = std::clamp(static_cast<int>(keypoint.u) * kSpreadColumns / width_, 0, kSpreadColumns - 1);
+    const int row = std::clamp(static_cast<int>(keypoint.v) * kSpreadRows / height_, 0, kSpreadRows - 1);
+    occupied |= std::uint64_t{1} << (row * kSpreadColumns + column);
+  }
+  hypothesis->spread = static_cast<double>(std::popcount(occupied)) / (kSpreadColumns * kSpreadRows);
+}
+
+void PoseEstimator::measure_focal_scale(PoseHypothesis* hypothesis) {
+  PoseRefinementOptions options = options_.refinement;
+  options.estimate_focal_scale = true;
+  options.max_error_px *= kFocalReach;
+  const PoseRefinementResult fitted = refine_pose(pairs_, hypothesis->T_map_camera, focal_px_, options, nullptr);
+  if (!fitted.is_converged) return;
+  hypothesis->has_focal_scale = true;
+  hypothesis->focal_scale = fitted.focal_scale;
+  hypothesis->focal_scale_sigma = fitted.focal_scale_sigma;
+}
+
+}  // namespace camloc

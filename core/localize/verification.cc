@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/localize/verification.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace camloc {
+
+Reason verify(const PoseHypothesis& hypothesis, double margin, bool is_tracked, const VerificationOptions& options) {
+  if (!hypothesis.is_found) return hypothesis.num_matches < options.min_matches ? Reason::kFewMatches : Reason::kFewInliers;
+  if (hypothesis.num_matches < options.min_matches) return Reason::kFewMatches;
+  if (is_calibration_mismatch(hypothesis, options)) return Reason::kCalibrationMismatch;
+  const std::uint32_t min_inliers = is_tracked ? options.min_tracked_inliers : options.min_inliers;
+  if (hypothesis.num_inliers < min_inliers) return Reason::kFewInliers;
+  if (hypothesis.inlier_ratio() < options.min_inlier_ratio) return Reason::kLowInlierRatio;
+  if (hypothesis.spread < options.min_spread) return Reason::kPoorSpread;
+  if (margin < options.min_margin) return Reason::kAmbiguous;
+  const bool can_judge_depth = hypothesis.num_with_depth >= options.min_depth_samples;
+  if (can_judge_depth && hypothesis.depth_agreement < options.min_depth_agreement) return Reason::kDepthInconsistent;
+  const Vector6d variance = hypothesis.covariance.diagonal();
+  if (!(variance.head<3>().maxCoeff() < options.max_position_sigma_m * options.max_position_sigma_m)) return Reason::kUncertain;
+  if (!(variance.tail<3>().maxCoeff() < options.max_rotation_sigma_rad * options.max_rotation_sigma_rad)) return Reason::kUncertain;
+  return Reason::kNone;
+}
+
+bool is_calibration_mismatch(const PoseHypothesis& hypothesis, const VerificationOptions& options) {
+  if (!hypothesis.has_focal_scale) return false;
+  const double deviation = std::abs(hypothesis.focal_scale - 1.0);
+  return deviation > options.max_focal_deviation && deviation > options.focal_deviation_sigmas * hypothesis.focal_scale_sigma;
+}
+
+int quality_of(const PoseHypothesis& hypothesis, double margin) {
+  const double count = std::min(1.0, hypothesis.num_inliers / 200.0);
+  const double cover = std::min(1.0, hypothesis.spread / 0.6);
+  const double quality = 100.0 * std::cbrt(count * cover * hypothesis.inlier_ratio()) * std::clamp(margin, 0.0, 1.0);
+  return std::clamp(static_cast<int>(std::lround(quality)), 0, 100);
+}
+
+}  // namespace camloc

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Is this hypothesis a pose? An inlier count alone does not tell: on real frames of another place 16 of 16 hypotheses had
+// 15 inliers or more. Every test below must pass; the first that fails is the reason the caller hears.
+#pragma once
+
+#include "core/localize/localization.h"
+#include "core/localize/pose_estimator.h"
+
+namespace camloc {
+
+struct VerificationOptions {
+  std::uint32_t min_features = 40;
+  std::uint32_t min_matches = 25;
+  std::uint32_t min_inliers = 30;          ///< of a global fix
+  std::uint32_t min_tracked_inliers = 20;  ///< where the pose was predicted
+  double min_inlier_ratio = 0.45;
+  double min_spread = 0.12;
+  double min_margin = 0.3;
+  double min_depth_agreement = 0.6;
+  std::uint32_t min_depth_samples = 12;    ///< fewer inliers with depth say nothing
+  double max_focal_deviation = 0.05;       ///< |focal_scale - 1|
+  double focal_deviation_sigmas = 4.0;
+  double max_position_sigma_m = 0.15;
+  double max_rotation_sigma_rad = 0.06;
+};
+
+/// `margin` is 1 for a tracked hypothesis. kNone means verified.
+[[nodiscard]] Reason verify(const PoseHypothesis& hypothesis, double margin, bool is_tracked, const VerificationOptions& options);
+
+/// Does the focal length that the matches ask for contradict the assumed one?
+[[nodiscard]] bool is_calibration_mismatch(const PoseHypothesis& hypothesis, const VerificationOptions& options);
+
+/// 0..100 for people and for thresholds of subscribers: how far above the limits of verification a pose is.
+[[nodiscard]] int quality_of(const PoseHypothesis& hypothesis, double margin);
+
+}  // namespace camloc
