@@ -34,15 +34,18 @@ struct Sequence {
 };
 
 /// Errors name file and line. Unsorted stamps, missing images and an empty folder are errors; a colour image without a
-/// depth image within `max_gap_s` is not.
-[[nodiscard]] Result<Sequence> read_sequence(const std::string& folder, double max_gap_s = 0.02);
+/// depth image within `max_gap_s` is not. Depth belongs to the colour image nearest in time, one to one. 7-Scenes has no
+/// stamps: frame NNNNNN gets NNNNNN / frame_rate_hz seconds.
+[[nodiscard]] Result<Sequence> read_sequence(const std::string& folder, double max_gap_s = 0.02, double frame_rate_hz = 30);
 
 /// Poses recorded with the sequence (groundtruth.txt or .pose.txt), interpolated at the frame's stamp where the neighbours
-/// are at most 0.1 s apart; nullopt where there is none. Same length as sequence.frames.
+/// are at most 0.1 s apart; nullopt where there is none. Same length as sequence.frames. kNotFound where the recording
+/// has no poses at all.
 [[nodiscard]] Result<std::vector<std::optional<Rigid3>>> read_embedded_poses(const Sequence& sequence);
 
-/// Trajectory file in TUM format: "timestamp tx ty tz qx qy qz qw", seconds, '#' comments.
+/// Trajectory file in TUM format: "timestamp tx ty tz qx qy qz qw", seconds, '#' comments, ascending stamps.
 [[nodiscard]] Result<std::vector<StampedPose>> read_tum_trajectory(const std::string& path);
+/// One such line with stamp to the nanosecond, without line end.
 [[nodiscard]] std::string format_tum_line(std::int64_t stamp_ns, const Rigid3& T_map_camera);
 
 /// Pose at a time from an ordered trajectory: interpolated between neighbours at most `max_gap_s` apart, or the nearest

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The table of frame sources. A new device adds its line here and nothing else.
+#include "drivers/frame_source.h"
+
+#include "drivers/replay_source.h"
+#include "drivers/sample_source.h"
+#include "drivers/source_url.h"
+
+namespace camloc {
+
+namespace {
+
+struct Scheme {
+  const char* name;
+  Result<std::unique_ptr<FrameSource>> (*open)(const SourceUrl&);
+  const char* help;
+};
+
+constexpr Scheme kSchemes[] = {
+    {"replay", open_replay_source,
+     "replay://DIR?speed=1&loop=0&frames=0:100:2&exclude=::50&rate_hz=30  a recorded TUM RGB-D or 7-Scenes folder; speed=0 (default) is as fast as possible"},
+    {"sample", open_sample_source, "sample://?rate_hz=30&frames=300&width=640&height=480  generated images of a room, for trying things without a camera"},
+};
+
+}  // namespace
+
+Result<std::unique_ptr<FrameSource>> open_frame_source(const std::string& url) {
+  const Result<SourceUrl> parsed = parse_source_url(url);
+  if (!parsed) return parsed.status();
+  std::string known;
+  for (const Scheme& scheme : kSchemes) {
+    if (parsed->scheme == scheme.name) return scheme.open(*parsed);
+    known += std::string(known.empty() ? "" : ", ") + scheme.name + "://";
+  }
+  return Status(ErrorCode::kUnsupported, url + ": no frame source for " + parsed->scheme + "://; this build knows " + known);
+}
+
+std::vector<FrameSourceScheme> frame_source_schemes() {
+  std::vector<FrameSourceScheme> result;
+  for (const Scheme& scheme : kSchemes) result.push_back({scheme.name, scheme.help});
+  return result;
+}
+
+}  // namespace camloc

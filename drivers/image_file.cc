@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// See image_file.h.
+#include "drivers/image_file.h"
+
+#include <algorithm>
+#include <array>
+
+#include "drivers/file_bytes.h"
+#include "drivers/image_codecs.h"
+
+namespace camloc {
+
+namespace {
+
+constexpr std::array<std::uint8_t, 3> kJpegMagic{0xFF, 0xD8, 0xFF};
+constexpr std::array<std::uint8_t, 8> kPngMagic{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+
+template <std::size_t N>
+bool starts_with(std::span<const std::uint8_t> bytes, const std::array<std::uint8_t, N>& magic) {
+  return bytes.size() >= N && std::equal(magic.begin(), magic.end(), bytes.begin());
+}
+
+Status unknown_kind(std::span<const std::uint8_t> bytes, const std::string& name) {
+  if (bytes.empty()) return {ErrorCode::kCorrupt, name + ": the file is empty"};
+  return {ErrorCode::kCorrupt, name + ": neither a JPEG nor a PNG image"};
+}
+
+Status decode_bytes(std::span<const std::uint8_t> bytes, const std::string& name, PixelKind kind, ByteImage* image) {
+  if (starts_with(bytes, kJpegMagic)) return decode_jpeg(bytes, name, kind, image);
+  if (starts_with(bytes, kPngMagic)) return decode_png(bytes, name, kind, image);
+  return unknown_kind(bytes, name);
+}
+
+}  // namespace
+
+Status check_image_size(std::int64_t width, std::int64_t height, const std::string& name) {
+  const bool is_fine = width > 0 && height > 0 && width <= kMaxImageSide && height <= kMaxImageSide && width * height <= kMaxImagePixels;
+  if (is_fine) return Status::ok();
+  return {ErrorCode::kUnsupported, name + ": image of " + std::to_string(width) + "x" + std::to_string(height) + " pixels is out of range"};
+}
+
+Status decode_gray(std::span<const std::uint8_t> bytes, const std::string& name, Image<std::uint8_t>* image) {
+  ByteImage decoded{&image->pixels, 0, 0};
+  Status status = decode_bytes(bytes, name, PixelKind::kGray, &decoded);
+  if (!status) return status;
+  image->width = decoded.width;
+  image->height = decoded.height;
+  return Status::ok();
+}
+
+Status decode_depth(std::span<const std::uint8_t> bytes, const std::string& name, Image<std::uint16_t>* image) {
+  if (starts_with(bytes, kPngMagic)) return decode_png_depth(bytes, name, image);
+  if (starts_with(bytes, kJpegMagic)) return {ErrorCode::kUnsupported, name + ": a JPEG image cannot hold depth; expected a 16-bit grey PNG"};
+  return unknown_kind(bytes, name);
+}
+
+Result<ColorImage> decode_color(std::span<const std::uint8_t> bytes, const std::string& name) {
+  ColorImage image;
+  ByteImage decoded{&image.pixels, 0, 0};
+  if (Status status = decode_bytes(bytes, name, PixelKind::kColor, &decoded); !status) return status;
+  image.width = decoded.width;
+  image.height = decoded.height;
+  return image;
+}
+
+Result<ImageSize> decode_image_size(std::span<const std::uint8_t> bytes, const std::string& name) {
+  if (starts_with(bytes, kJpegMagic)) return decode_jpeg_size(bytes, name);
+  if (starts_with(bytes, kPngMagic)) return decode_png_size(bytes, name);
+  return unknown_kind(bytes, name);
+}
+
+Status ImageReader::read_gray(const std::string& path, Image<std::uint8_t>* image) {
+  Status status = read_file_bytes(path, kMaxImageFileBytes, &bytes_);
+  return status ? decode_gray(bytes_, path, image) : status;
+}
+
+Status ImageReader::read_depth(const std::string& path, Image<std::uint16_t>* image) {
+  Status status = read_file_bytes(path, kMaxImageFileBytes, &bytes_);
+  return status ? decode_depth(bytes_, path, image) : status;
+}
+
+Result<ColorImage> ImageReader::read_color(const std::string& path) {
+  if (Status status = read_file_bytes(path, kMaxImageFileBytes, &bytes_); !status) return status;
+  return decode_color(bytes_, path);
+}
+
+Result<ImageSize> ImageReader::read_size(const std::string& path) {
+  if (Status status = read_file_bytes(path, kMaxImageFileBytes, &bytes_); !status) return status;
+  return decode_image_size(bytes_, path);
+}
+
+}  // namespace camloc

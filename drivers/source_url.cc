@@ -1,0 +1,107 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// See source_url.h.
+#include "drivers/source_url.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "drivers/text.h"
+
+namespace camloc {
+
+namespace {
+
+/// A '%' that two hexadecimal digits do not follow stays what it is: folders are called "100%" now and then.
+std::string percent_decoded(std::string_view text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned value = 0;
+    if (text[i] == '%' && i + 2 < text.size()) {
+      const auto [end, error] = std::from_chars(text.data() + i + 1, text.data() + i + 3, value, 16);
+      if (error == std::errc() && end == text.data() + i + 3 && value != 0) {
+        result += static_cast<char>(value);
+        i += 2;
+        continue;
+      }
+    }
+    result += text[i];
+  }
+  return result;
+}
+
+bool is_scheme(std::string_view text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '+' || c == '-'; });
+}
+
+Status parse_options(std::string_view query, SourceUrl* url) {
+  for (const std::string_view pair : split_fields(query, "&")) {
+    const std::size_t equals = pair.find('=');
+    const std::string key(pair.substr(0, equals));
+    if (equals == std::string_view::npos || key.empty()) {
+      return {ErrorCode::kInvalid, url->text + ": option " + quoted(pair) + " is not key=value"};
+    }
+    if (!url->options.emplace(key, percent_decoded(pair.substr(equals + 1))).second) {
+      return {ErrorCode::kInvalid, url->text + ": option " + quoted(key) + " is given twice"};
+    }
+  }
+  return Status::ok();
+}
+
+std::string short_number(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof(text), value).ptr;
+  return {text, end};
+}
+
+}  // namespace
+
+std::string SourceUrl::text_option(const std::string& key, const std::string& fallback) const {
+  const auto option = options.find(key);
+  return option == options.end() ? fallback : option->second;
+}
+
+Result<double> SourceUrl::number_option(const std::string& key, double fallback, double low, double high) const {
+  const auto option = options.find(key);
+  if (option == options.end()) return fallback;
+  const std::optional<double> value = parse_double(option->second);
+  if (!value || !(*value >= low && *value <= high)) {
+    return Status(ErrorCode::kInvalid, text + ": option " + key + "=" + option->second + ": expected a number from " +
+                                           short_number(low) + " to " + short_number(high));
+  }
+  return *value;
+}
+
+Status SourceUrl::check_options(const std::vector<std::string>& known) const {
+  for (const auto& [key, value] : options) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    std::string list;
+    for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
+    return {ErrorCode::kInvalid, text + ": unknown option " + quoted(key) + "; " + scheme + ":// knows " + list};
+  }
+  return Status::ok();
+}
+
+Result<SourceUrl> parse_source_url(std::string_view url) {
+  SourceUrl result;
+  result.text = url;
+  const std::size_t separator = url.find("://");
+  const bool has_scheme = separator != std::string_view::npos && is_scheme(url.substr(0, separator));
+  std::string_view rest = has_scheme ? url.substr(separator + 3) : url;
+  result.scheme = has_scheme ? url.substr(0, separator) : "replay";
+  std::transform(result.scheme.begin(), result.scheme.end(), result.scheme.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::size_t question = rest.find('?');
+  if (question != std::string_view::npos) {
+    if (Status status = parse_options(rest.substr(question + 1), &result); !status) return status;
+    rest = rest.substr(0, question);
+  }
+  result.path = has_scheme ? percent_decoded(rest) : std::string(rest);
+  return result;
+}
+
+}  // namespace camloc

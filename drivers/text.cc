@@ -1,0 +1,109 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// See text.h.
+#include "drivers/text.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace camloc {
+
+namespace {
+
+constexpr std::int64_t kNsPerSecond = 1'000'000'000;
+constexpr std::int64_t kMaxSeconds = 9'000'000'000;  // below 2^63 nanoseconds
+
+std::string_view without_plus(std::string_view text) {
+  return text.size() > 1 && text[0] == '+' && text[1] != '-' && text[1] != '+' ? text.substr(1) : text;
+}
+
+template <typename T>
+std::optional<T> parse_number(std::string_view text) {
+  text = without_plus(text);
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+bool is_digits(std::string_view text) { return text.find_first_not_of("0123456789") == std::string_view::npos; }
+
+}  // namespace
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\r";
+  const std::size_t begin = text.find_first_not_of(kBlanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
+}
+
+std::vector<TextLine> content_lines(std::string_view text) {
+  std::vector<TextLine> lines;
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
+  int number = 0;
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = trimmed(text.substr(0, end));
+    ++number;
+    if (!line.empty() && line[0] != '#') lines.push_back({line, number});
+    if (end == std::string_view::npos) break;
+    text.remove_prefix(end + 1);
+  }
+  return lines;
+}
+
+std::vector<std::string_view> split_fields(std::string_view text, std::string_view separators) {
+  std::vector<std::string_view> fields;
+  while (true) {
+    const std::size_t begin = text.find_first_not_of(separators);
+    if (begin == std::string_view::npos) return fields;
+    text.remove_prefix(begin);
+    const std::size_t end = text.find_first_of(separators);
+    fields.push_back(text.substr(0, end));
+    if (end == std::string_view::npos) return fields;
+    text.remove_prefix(end);
+  }
+}
+
+std::optional<double> parse_double(std::string_view text) { return parse_number<double>(text); }
+
+std::optional<std::int64_t> parse_int(std::string_view text) { return parse_number<std::int64_t>(text); }
+
+std::optional<std::int64_t> parse_seconds_ns(std::string_view text) {
+  text = without_plus(text);
+  if (text.find_first_of("eE") != std::string_view::npos) {  // as numpy.savetxt writes by default
+    const std::optional<double> seconds = parse_double(text);
+    if (!seconds || !(std::abs(*seconds) <= static_cast<double>(kMaxSeconds))) return std::nullopt;
+    return std::llround(*seconds * static_cast<double>(kNsPerSecond));
+  }
+  const bool is_negative = text.starts_with('-');
+  if (is_negative) text.remove_prefix(1);
+  const std::size_t point = text.find('.');
+  const std::string_view whole = text.substr(0, point);
+  std::string_view fraction = point == std::string_view::npos ? std::string_view{} : text.substr(point + 1);
+  if ((whole.empty() && fraction.empty()) || !is_digits(whole) || !is_digits(fraction)) return std::nullopt;
+  const std::optional<std::int64_t> seconds = whole.empty() ? 0 : parse_int(whole);
+  if (!seconds || *seconds > kMaxSeconds) return std::nullopt;
+  std::int64_t ns = *seconds * kNsPerSecond;
+  std::int64_t unit = kNsPerSecond / 10;
+  for (const char digit : fraction.substr(0, 9)) {
+    ns += (digit - '0') * unit;
+    unit /= 10;
+  }
+  return is_negative ? -ns : ns;
+}
+
+Status line_error(const std::string& path, int line, const std::string& what) {
+  return {ErrorCode::kInvalid, path + ":" + std::to_string(line) + ": " + what};
+}
+
+std::string quoted(std::string_view text) {
+  constexpr std::size_t kMaxLength = 40;
+  std::string result = "'";
+  for (const char c : text.substr(0, kMaxLength)) result += static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
+  if (text.size() > kMaxLength) result += "...";
+  return result + "'";
+}
+
+}  // namespace camloc

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Small text readers that do not depend on the locale: lines of a table with '#' comments, fields, numbers, stamps.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/result.h"
+
+namespace camloc {
+
+struct TextLine {
+  std::string_view text;  ///< without line end and surrounding blanks
+  int number = 0;         ///< from 1
+};
+
+/// Without blanks, tabs and carriage returns at both ends.
+[[nodiscard]] std::string_view trimmed(std::string_view text);
+/// Lines that are neither empty nor start with '#'. The views look into `text`.
+[[nodiscard]] std::vector<TextLine> content_lines(std::string_view text);
+/// Parts between any of `separators`; empty parts are kept out.
+[[nodiscard]] std::vector<std::string_view> split_fields(std::string_view text, std::string_view separators = " \t,");
+/// The whole text as a decimal number ("nan" and "inf" are numbers here).
+[[nodiscard]] std::optional<double> parse_double(std::string_view text);
+[[nodiscard]] std::optional<std::int64_t> parse_int(std::string_view text);
+/// Decimal seconds to nanoseconds. Digits are taken as they are: a double holds epoch seconds only to 0.2 us.
+[[nodiscard]] std::optional<std::int64_t> parse_seconds_ns(std::string_view text);
+
+/// "path:line: what".
+[[nodiscard]] Status line_error(const std::string& path, int line, const std::string& what);
+/// Text from outside, fit for a one-line message: quoted, cut at 40 characters, control characters replaced.
+[[nodiscard]] std::string quoted(std::string_view text);
+
+}  // namespace camloc

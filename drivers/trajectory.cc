@@ -1,0 +1,156 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Poses over time: TUM trajectory files, 7-Scenes pose files, interpolation. See sequence.h.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+
+#include "drivers/file_bytes.h"
+#include "drivers/sequence.h"
+#include "drivers/text.h"
+
+namespace camloc {
+
+namespace {
+
+constexpr double kMaxNormError = 0.05;      // of a quaternion; files carry four digits
+constexpr double kMaxRotationError = 0.05;  // of R^T R - I; recorded files are off by 4e-4
+constexpr std::int64_t kNearestNs = 500'000;
+
+Result<StampedPose> parse_tum_line(const std::string& path, const TextLine& line) {
+  const std::vector<std::string_view> fields = split_fields(line.text);
+  if (fields.size() != 8) {
+    return line_error(path, line.number, std::to_string(fields.size()) + " fields, expected 'timestamp tx ty tz qx qy qz qw'");
+  }
+  const std::optional<std::int64_t> stamp_ns = parse_seconds_ns(fields[0]);
+  if (!stamp_ns) return line_error(path, line.number, "stamp " + quoted(fields[0]) + " is not a time in seconds");
+  std::array<double, 7> v{};
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    const std::optional<double> value = parse_double(fields[i + 1]);
+    if (!value || !std::isfinite(*value)) return line_error(path, line.number, quoted(fields[i + 1]) + " is not a number");
+    v[i] = *value;
+  }
+  Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
+  if (!(std::abs(rotation.norm() - 1) <= kMaxNormError)) return line_error(path, line.number, "the quaternion is not of unit length");
+  rotation.normalize();
+  return StampedPose{*stamp_ns, {rotation, {v[0], v[1], v[2]}}};
+}
+
+/// 4x4 row-major, camera to world. Non-finite numbers mark a frame without a pose in some recordings.
+Result<std::optional<Rigid3>> read_pose_matrix(const std::string& path) {
+  Result<std::string> text = read_file_text(path, 1 << 16);
+  if (!text) return text.status();
+  const std::vector<std::string_view> fields = split_fields(*text, " \t\r\n,");
+  if (fields.size() != 16) return Status(ErrorCode::kInvalid, path + ": " + std::to_string(fields.size()) + " numbers, expected a 4x4 matrix");
+  Eigen::Matrix4d matrix;
+  for (int i = 0; i < 16; ++i) {
+    const std::optional<double> value = parse_double(fields[static_cast<std::size_t>(i)]);
+    if (!value) return Status(ErrorCode::kInvalid, path + ": " + quoted(fields[static_cast<std::size_t>(i)]) + " is not a number");
+    matrix(i / 4, i % 4) = *value;
+  }
+  if (!matrix.allFinite()) return std::optional<Rigid3>();
+  const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
+  const double error = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  const bool is_rigid = error <= kMaxRotationError && rotation.determinant() > 0 && (matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() < 1e-6;
+  if (!is_rigid) return Status(ErrorCode::kInvalid, path + ": not a rigid transform (rotation, translation, last row 0 0 0 1)");
+  return std::optional<Rigid3>(Rigid3{nearest_rotation(rotation), matrix.topRightCorner<3, 1>()});
+}
+
+std::string pose_path_of(const SequenceFrame& frame) {
+  const std::size_t suffix = frame.color_path.rfind(".color.");
+  return frame.color_path.substr(0, suffix) + ".pose.txt";
+}
+
+Result<std::vector<std::optional<Rigid3>>> read_pose_matrices(const Sequence& sequence) {
+  std::vector<std::optional<Rigid3>> poses;
+  bool has_any_file = false;
+  for (const SequenceFrame& frame : sequence.frames) {
+    Result<std::optional<Rigid3>> T_world_camera = read_pose_matrix(pose_path_of(frame));
+    if (T_world_camera) {
+      has_any_file = true;
+      poses.push_back(*T_world_camera);
+    } else if (T_world_camera.status().code() == ErrorCode::kNotFound) {
+      poses.emplace_back();
+    } else {
+      return T_world_camera.status();
+    }
+  }
+  if (!has_any_file) return Status(ErrorCode::kNotFound, sequence.folder + ": no frame-*.pose.txt, the recording has no poses of its own");
+  return poses;
+}
+
+void append_fixed(double value, int digits, std::string* line) {
+  char text[400];  // enough for the largest double
+  const auto end = std::to_chars(text, text + sizeof(text), value, std::chars_format::fixed, digits).ptr;
+  line->append(text, end);
+}
+
+}  // namespace
+
+Result<std::vector<StampedPose>> read_tum_trajectory(const std::string& path) {
+  Result<std::string> text = read_file_text(path);
+  if (!text) return text.status();
+  std::vector<StampedPose> poses;
+  for (const TextLine& line : content_lines(*text)) {
+    Result<StampedPose> pose = parse_tum_line(path, line);
+    if (!pose) return pose.status();
+    if (!poses.empty() && pose->stamp_ns < poses.back().stamp_ns) {
+      return line_error(path, line.number, "stamp is before the one above it; sort the file by time");
+    }
+    poses.push_back(*pose);
+  }
+  return poses;
+}
+
+std::string format_tum_line(std::int64_t stamp_ns, const Rigid3& T_map_camera) {
+  constexpr std::int64_t kNsPerSecond = 1'000'000'000;
+  std::string line = stamp_ns < 0 ? "-" : "";
+  const std::uint64_t magnitude = stamp_ns < 0 ? 0 - static_cast<std::uint64_t>(stamp_ns) : static_cast<std::uint64_t>(stamp_ns);
+  const std::string fraction = std::to_string(magnitude % kNsPerSecond);
+  line += std::to_string(magnitude / kNsPerSecond) + "." + std::string(9 - fraction.size(), '0') + fraction;
+  const Eigen::Vector3d& t = T_map_camera.translation;
+  const Eigen::Quaterniond& q = T_map_camera.rotation;
+  for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) {
+    line += ' ';
+    append_fixed(value, 9, &line);
+  }
+  return line;
+}
+
+std::optional<Rigid3> pose_at(const std::vector<StampedPose>& trajectory, std::int64_t stamp_ns, double max_gap_s) {
+  const auto after = std::lower_bound(trajectory.begin(), trajectory.end(), stamp_ns,
+                                      [](const StampedPose& pose, std::int64_t stamp) { return pose.stamp_ns < stamp; });
+  if (after != trajectory.end() && after->stamp_ns == stamp_ns) return after->T_world_camera;
+  const bool has_after = after != trajectory.end();
+  const bool has_before = after != trajectory.begin();
+  if (has_before && has_after) {
+    const StampedPose& before = *(after - 1);
+    const auto gap_ns = static_cast<double>(after->stamp_ns - before.stamp_ns);
+    if (gap_ns <= max_gap_s * 1e9) {
+      return interpolate(before.T_world_camera, after->T_world_camera, static_cast<double>(stamp_ns - before.stamp_ns) / gap_ns);
+    }
+  }
+  const std::int64_t to_before_ns = has_before ? stamp_ns - (after - 1)->stamp_ns : kNearestNs + 1;
+  const std::int64_t to_after_ns = has_after ? after->stamp_ns - stamp_ns : kNearestNs + 1;
+  if (std::min(to_before_ns, to_after_ns) > kNearestNs) return std::nullopt;
+  return to_before_ns <= to_after_ns ? (after - 1)->T_world_camera : after->T_world_camera;
+}
+
+Result<std::vector<std::optional<Rigid3>>> read_embedded_poses(const Sequence& sequence) {
+  if (sequence.layout == "7scenes") return read_pose_matrices(sequence);
+  const std::string path = (std::filesystem::path(sequence.folder) / "groundtruth.txt").string();
+  Result<std::vector<StampedPose>> trajectory = read_tum_trajectory(path);
+  if (!trajectory && trajectory.status().code() == ErrorCode::kNotFound) {
+    return Status(ErrorCode::kNotFound, path + ": missing, the recording has no poses of its own");
+  }
+  if (!trajectory) return trajectory.status();
+  std::vector<std::optional<Rigid3>> poses;
+  for (const SequenceFrame& frame : sequence.frames) poses.push_back(pose_at(*trajectory, frame.stamp_ns));
+  return poses;
+}
+
+}  // namespace camloc
