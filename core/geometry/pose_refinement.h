@@ -40,7 +40,8 @@ struct PoseRefinementResult {
   double focal_scale_sigma = 0.0;
 };
 
-/// `inlier_mask` (one byte a pair, set by this call) may be null. Buffers are fixed; allocates nothing.
+/// `inlier_mask` (one byte a pair, set by this call) may be null; give it the capacity of `pairs` beforehand, then this call
+/// allocates nothing. Not converged (covariance = identity, meaningless) with fewer than 4 inliers or a singular problem.
 [[nodiscard]] PoseRefinementResult refine_pose(const Correspondences& pairs, const Rigid3& T_map_camera_start, double focal_px,
                                                const PoseRefinementOptions& options, std::vector<std::uint8_t>* inlier_mask);
 
