@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// `camloc ctl`: asks a running camlocd for its status, to reload its map, to forget its pose.
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "tools/camloc/commands.h"
+#include "tools/camloc/control_client.h"
+
+namespace camloc::tools {
+namespace {
+
+struct CtlOptions {
+  std::string command;
+  std::string socket_path = kDefaultControlSocket;
+  bool is_json = false;
+  int timeout_ms = 10000;
+};
+
+std::string plain_text(const nlohmann::json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
+
+/// One "key  value" line each; what is nested is indented by its parent's name.
+void print_table(const nlohmann::json& object, const std::string& prefix) {
+  for (const auto& [key, value] : object.items()) {
+    if (prefix.empty() && key == "ok") continue;
+    if (value.is_object()) {
+      print_table(value, prefix + key + ".");
+    } else {
+      std::printf("%-26s %s\n", (prefix + key).c_str(), plain_text(value).c_str());
+    }
+  }
+}
+
+int run(const CtlOptions& options) {
+  const auto answer = control_request(options.socket_path, options.command, std::chrono::milliseconds(options.timeout_ms));
+  if (!answer) return report(answer.status());
+  const bool is_ok = answer->value("ok", false);
+  if (options.is_json) {
+    std::printf("%s\n", answer->dump().c_str());
+  } else if (!is_ok) {
+    const std::string why = answer->contains("error") ? plain_text((*answer)["error"]) : "no reason given";
+    return report({ErrorCode::kUnavailable, options.command + " refused: " + why});
+  } else if (answer->size() <= 1) {
+    std::printf("%s: done\n", options.command.c_str());
+  } else {
+    print_table(*answer, "");
+  }
+  return is_ok ? 0 : 1;
+}
+
+}  // namespace
+
+void add_ctl_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<CtlOptions>();
+  CLI::App* ctl = app.add_subcommand("ctl", "Ask a running camlocd: status, reload, reset");
+  ctl->require_subcommand(1);
+  ctl->fallthrough();
+  ctl->add_option("--socket", options->socket_path, "control socket of camlocd")->capture_default_str();
+  ctl->add_option("--timeout-ms", options->timeout_ms, "wait this long for the answer")->check(CLI::Range(1, 600000))->capture_default_str();
+  ctl->add_flag("--json", options->is_json, "print the answer as it came");
+  const auto add = [&](const char* name, const char* help) {
+    ctl->add_subcommand(name, help)->callback([options, name, &exit_code] {
+      options->command = name;
+      exit_code = run(*options);
+    });
+  };
+  add("status", "state, map, source, counters");
+  add("reload", "open the map again; a bad one is refused and the old one kept");
+  add("reset", "forget the last pose and search the whole map");
+}
+
+}  // namespace camloc::tools

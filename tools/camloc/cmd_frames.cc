@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// `camloc frames`: which way the axes point, by one example that is computed here with the code that localizes.
+#include <Eigen/Geometry>
+#include <cstdio>
+#include <memory>
+#include <numbers>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "core/geometry/rigid3.h"
+#include "drivers/sequence.h"
+#include "tools/camloc/commands.h"
+
+namespace camloc::tools {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// Axes of another convention, as columns in `camera`'s axes: p_camera = axes * p_other.
+Matrix3d columns(const Vector3d& x, const Vector3d& y, const Vector3d& z) {
+  Matrix3d axes;
+  axes << x, y, z;
+  return axes;
+}
+
+const Vector3d kRight = Vector3d::UnitX(), kDown = Vector3d::UnitY(), kForward = Vector3d::UnitZ();
+
+/// The example: a map with z up, a camera at eye height looking along x of the map and turned 20 degrees to the left.
+struct Example {
+  Rigid3 T_map_camera;
+  Vector3d p_map{5.0, 2.4, 1.9};
+  Intrinsics intrinsics;
+
+  Example() {
+    const double yaw_rad = 20 * std::numbers::pi / 180;
+    const Matrix3d R_body_camera = columns(kForward, -kRight, -kDown).transpose();  // body: x forward, y left, z up
+    T_map_camera.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ()).toRotationMatrix() * R_body_camera);
+    T_map_camera.translation = {2.0, 1.0, 1.6};
+    intrinsics.width = 640;
+    intrinsics.height = 480;
+    intrinsics.fx = intrinsics.fy = 525;
+    intrinsics.cx = 319.5;
+    intrinsics.cy = 239.5;
+  }
+};
+
+struct Convention {
+  const char* name;
+  const char* axes;
+  Matrix3d camera_from_other;
+};
+
+std::vector<Convention> conventions() {
+  return {
+      {"OpenCV, ROS optical, camloc", "x right, y down, z forward", columns(kRight, kDown, kForward)},
+      {"ROS body (REP-103)", "x forward, y left, z up", columns(kForward, -kRight, -kDown)},
+      {"OpenGL, ARKit, WebXR eye", "x right, y up, z backward", columns(kRight, -kDown, -kForward)},
+      {"Unity, Irrlicht", "x right, y up, z forward", columns(kRight, -kDown, kForward)},
+      {"Unreal", "x forward, y right, z up", columns(kForward, kRight, -kDown)},
+  };
+}
+
+const char* handedness(const Matrix3d& axes) { return axes.determinant() > 0 ? "right-handed" : "LEFT-handed"; }
+
+void print_vector(const char* name, const Vector3d& v) { std::printf("  %-32s = [%+.4f %+.4f %+.4f]\n", name, v.x(), v.y(), v.z()); }
+
+void print_matrix(const char* name, const Eigen::Matrix4d& matrix) {
+  for (int row = 0; row < 4; ++row) {
+    std::printf("  %-32s %s [%+.4f %+.4f %+.4f %+.4f]\n", row == 0 ? name : "", row == 0 ? "=" : " ", matrix(row, 0), matrix(row, 1), matrix(row, 2),
+                matrix(row, 3));
+  }
+}
+
+void print_transforms(const Example& example) {
+  const Rigid3& T_map_camera = example.T_map_camera;
+  const Eigen::Quaterniond& q = T_map_camera.rotation;
+  std::printf("T_a_b is defined by p_a = T_a_b * p_b. T_map_camera is the camera's pose in the map; its translation is the camera centre.\n\n");
+  std::printf("Example: a map with z up; a camera 1.6 m above the floor that looks along x of the map, turned 20 deg to the left.\n");
+  print_matrix("T_map_camera", T_map_camera.matrix());
+  print_matrix("T_camera_map (the \"view matrix\")", T_map_camera.inverse().matrix());
+  std::printf("  %-32s = [%+.4f %+.4f %+.4f %+.4f]   LCM (pose_t, bot_core), Eigen's constructor, COLMAP\n", "rotation as w x y z", q.w(), q.x(), q.y(), q.z());
+  std::printf("  %-32s = [%+.4f %+.4f %+.4f %+.4f]   TUM files, ROS messages\n", "rotation as x y z w", q.x(), q.y(), q.z(), q.w());
+  std::printf("  %-32s = %s\n\n", "TUM line at t = 1 s", format_tum_line(1'000'000'000, T_map_camera).c_str());
+}
+
+void print_projection(const Example& example) {
+  const Vector3d p_camera = example.T_map_camera.inverse() * example.p_map;
+  const Eigen::Vector2d pixel = example.intrinsics.project(p_camera);
+  std::printf("A point of the map, seen by that camera (fx = fy = 525, cx = 319.5, cy = 239.5, pixel centres at integers):\n");
+  print_vector("p_map", example.p_map);
+  print_vector("p_camera = T_camera_map * p_map", p_camera);
+  print_vector("T_map_camera * p_camera", example.T_map_camera * p_camera);
+  std::printf("  %-32s = %.2f + %.0f * %+.4f / %.4f = %.2f   (column, to the right)\n", "u = cx + fx * x / z", example.intrinsics.cx, example.intrinsics.fx,
+              p_camera.x(), p_camera.z(), pixel.x());
+  std::printf("  %-32s = %.2f + %.0f * %+.4f / %.4f = %.2f   (row, downwards)\n\n", "v = cy + fy * y / z", example.intrinsics.cy, example.intrinsics.fy,
+              p_camera.y(), p_camera.z(), pixel.y());
+
+  std::printf("The same point in the camera axes of others:\n");
+  for (const auto& convention : conventions()) {
+    const Vector3d p = convention.camera_from_other.transpose() * p_camera;
+    std::printf("  %-28s %-27s %-13s [%+.4f %+.4f %+.4f] m\n", convention.name, convention.axes, handedness(convention.camera_from_other), p.x(), p.y(), p.z());
+  }
+  std::printf("  Unreal counts in centimetres. A left-handed convention is a mirror image: no rotation leads there.\n\n");
+}
+
+void print_covariance(const Example& example) {
+  const Rigid3 estimate{exp_so3({0, 0, 0.01}) * example.T_map_camera.rotation, example.T_map_camera.translation + Vector3d(0.02, 0, 0)};
+  const Vector6d error = pose_error(example.T_map_camera, estimate);
+  std::printf("Covariance: 6x6, first position (m), then rotation vector (rad), both in the axes of the map. An estimate 2 cm too far along\n"
+              "x and turned 0.01 rad too far about the map's z has the error\n");
+  std::printf("  %-32s = [%+.4f %+.4f %+.4f  %+.4f %+.4f %+.4f]\n", "pose_error(true, estimate)", error[0], error[1], error[2], error[3], error[4], error[5]);
+}
+
+nlohmann::json to_json(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+nlohmann::json to_json(const Eigen::Matrix4d& matrix) {
+  nlohmann::json rows = nlohmann::json::array();
+  for (int row = 0; row < 4; ++row) rows.push_back({matrix(row, 0), matrix(row, 1), matrix(row, 2), matrix(row, 3)});
+  return rows;
+}
+
+void print_json(const Example& example) {
+  const Vector3d p_camera = example.T_map_camera.inverse() * example.p_map;
+  const Eigen::Vector2d pixel = example.intrinsics.project(p_camera);
+  const Eigen::Quaterniond& q = example.T_map_camera.rotation;
+  nlohmann::json document{{"T_map_camera", to_json(example.T_map_camera.matrix())},
+                          {"T_camera_map", to_json(example.T_map_camera.inverse().matrix())},
+                          {"rotation_wxyz", {q.w(), q.x(), q.y(), q.z()}},
+                          {"p_map", to_json(example.p_map)},
+                          {"p_camera", to_json(p_camera)},
+                          {"pixel", {pixel.x(), pixel.y()}}};
+  for (const auto& convention : conventions()) {
+    document["conventions"][convention.name] = {{"axes", convention.axes},
+                                                {"is_right_handed", convention.camera_from_other.determinant() > 0},
+                                                {"p", to_json(Vector3d(convention.camera_from_other.transpose() * p_camera))}};
+  }
+  std::printf("%s\n", document.dump(2).c_str());
+}
+
+int run(bool is_json) {
+  const Example example;
+  if (is_json) {
+    print_json(example);
+    return 0;
+  }
+  print_transforms(example);
+  print_projection(example);
+  print_covariance(example);
+  return 0;
+}
+
+}  // namespace
+
+void add_frames_command(CLI::App& app, int& exit_code) {
+  auto is_json = std::make_shared<bool>(false);
+  CLI::App* command = app.add_subcommand("frames", "Frame conventions with a worked example");
+  command->add_flag("--json", *is_json, "the numbers as JSON");
+  command->callback([is_json, &exit_code] { exit_code = run(*is_json); });
+}
+
+}  // namespace camloc::tools

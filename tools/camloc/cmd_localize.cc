@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// `camloc localize`: every frame of a recording against a map; a trajectory and, on request, everything known per frame.
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "tools/camloc/commands.h"
+#include "tools/camloc/sequence_run.h"
+#include "tools/camloc/trajectory_file.h"
+
+namespace camloc::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct LocalizeArguments {
+  SequenceRunOptions run;
+  std::string mode = "track";
+  std::string out_path, json_path;
+};
+
+Json pose_json(const Localization& result) {
+  if (!result.has_pose) return nullptr;
+  const auto& t = result.T_map_camera.translation;
+  const auto& q = result.T_map_camera.rotation;
+  return {{"position_m", {t.x(), t.y(), t.z()}}, {"orientation_wxyz", {q.w(), q.x(), q.y(), q.z()}}};
+}
+
+Json covariance_json(const Localization& result) {
+  if (!result.has_pose) return nullptr;
+  Json rows = Json::array();
+  for (int row = 0; row < 6; ++row) {
+    Json values = Json::array();
+    for (int column = 0; column < 6; ++column) values.push_back(result.covariance(row, column));
+    rows.push_back(values);
+  }
+  return rows;
+}
+
+Json latency_json(const Localization& result) {
+  Json latency;
+  for (int i = 0; i < kNumStages; ++i) {
+    latency[to_string(static_cast<Stage>(i))] = 1e-6 * static_cast<double>(result.stage_ns[static_cast<std::size_t>(i)]);
+  }
+  return latency;
+}
+
+Json record_json(const Localization& result) {
+  return {{"index", result.sequence},
+          {"stamp", 1e-9 * static_cast<double>(result.stamp_ns)},
+          {"state", to_string(result.state)},
+          {"reason", to_string(result.reason)},
+          {"pose", pose_json(result)},
+          {"covariance", covariance_json(result)},
+          {"quality", result.quality},
+          {"tracked", result.is_tracked},
+          {"features", result.num_features},
+          {"matches", result.num_matches},
+          {"inliers", result.num_inliers},
+          {"inlier_ratio", result.inlier_ratio},
+          {"spread", result.spread},
+          {"margin", result.margin},
+          {"depth_agreement", result.depth_agreement},
+          {"focal_scale", result.focal_scale},
+          {"reset_counter", result.reset_counter},
+          {"jump_m", result.jump_m},
+          {"latency_ms", latency_json(result)}};
+}
+
+void print_summary(const std::map<std::string, std::uint64_t>& states, const std::map<std::string, std::uint64_t>& reasons,
+                   const RunCounts& counts, const CalibrationHealth& calibration) {
+  std::printf("frames      %llu\n", static_cast<unsigned long long>(counts.num_frames));
+  if (counts.num_corrupt > 0) std::printf("unreadable  %llu\n", static_cast<unsigned long long>(counts.num_corrupt));
+  for (const auto& [state, count] : states) std::printf("%-11s %llu\n", state.c_str(), static_cast<unsigned long long>(count));
+  for (const auto& [reason, count] : reasons) std::printf("  not localized: %s: %llu\n", reason.c_str(), static_cast<unsigned long long>(count));
+  if (calibration.is_suspect) {
+    std::printf("WARNING     calibration: the images fit the map with a focal length %.1f %% %s than the camera file says; check the camera file\n",
+                100.0 * std::abs(calibration.focal_scale - 1.0), calibration.focal_scale > 1.0 ? "longer" : "shorter");
+  }
+}
+
+Status localize(const LocalizeArguments& arguments) {
+  auto run = open_sequence_run(arguments.run);
+  if (!run) return run.status();
+
+  EstimatedTrajectory trajectory;
+  Json records = Json::array();
+  std::map<std::string, std::uint64_t> states, reasons;
+  const auto counts = for_each_frame(*run, [&](const Frame& frame) {
+    const Localization& result = run->localizer->process(frame);
+    ++states[to_string(result.state)];
+    if (result.state == State::kLocalized) {
+      trajectory.poses.push_back({result.stamp_ns, result.T_map_camera, result.covariance});
+    } else {
+      ++reasons[to_string(result.reason)];
+    }
+    if (!arguments.json_path.empty()) records.push_back(record_json(result));
+  });
+  if (!counts) return counts.status();
+
+  const CalibrationHealth& calibration = run->localizer->calibration();
+  trajectory.num_frames = counts->num_frames;
+  if (run->camera.poses_are_of_depth_camera) trajectory.T_color_depth = run->camera.T_color_depth;
+  if (calibration.is_suspect) trajectory.suspect_focal_scale = calibration.focal_scale;
+  if (Status status = write_text_file(arguments.out_path, format_trajectory(trajectory)); !status) return status;
+  if (!arguments.json_path.empty()) {
+    const Json document{{"map", arguments.run.map_path},
+                        {"sequence", arguments.run.sequence_url},
+                        {"mode", arguments.mode},
+                        {"summary",
+                         {{"frames", counts->num_frames},
+                          {"unreadable", counts->num_corrupt},
+                          {"states", states},
+                          {"calibration", {{"is_suspect", calibration.is_suspect}, {"focal_scale", calibration.focal_scale}, {"frames", calibration.num_frames}}}}},
+                        {"frames", records}};
+    if (Status status = write_text_file(arguments.json_path, document.dump(1) + "\n"); !status) return status;
+  }
+  print_summary(states, reasons, *counts, calibration);
+  return Status::ok();
+}
+
+}  // namespace
+
+void add_localize_command(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<LocalizeArguments>();
+  CLI::App* command = app.add_subcommand("localize", "Localize every frame of a recording against a map");
+  command->add_option("--map", arguments->run.map_path, "Map (.cmap)")->required();
+  command->add_option("--sequence", arguments->run.sequence_url, "Folder or URL of the recording")->required();
+  command->add_option("--camera", arguments->run.camera_path, "Camera file (TOML, or YAML of kalibr, ROS, OpenCV)")->required();
+  command->add_option("--out", arguments->out_path, "Trajectory to write: TUM format, LOCALIZED frames, T_map_camera")->required();
+  command->add_option("--frames", arguments->run.frames, "Frames to use: start:stop:step[,...], as Python slices");
+  command->add_option("--exclude", arguments->run.exclude, "Frames to leave out, same form");
+  command->add_option("--mode", arguments->mode, "track: frames follow each other; single: every frame on its own")
+      ->check(CLI::IsMember({"track", "single"}))->capture_default_str();
+  command->add_option("--perturb", arguments->run.perturbations, "gamma=, contrast=, exposure=, noise=, blur=; may be repeated");
+  command->add_option("--json", arguments->json_path, "Also write one record per frame to this file");
+  command->add_flag("!--no-depth", arguments->run.use_depth, "Ignore measured depth");
+  command->footer("Example: camloc localize --map kitchen.cmap --sequence recordings/kitchen --camera 7scenes.toml --frames ::50 --mode single --out traj.tum");
+  command->callback([arguments, &exit_code] {
+    arguments->run.is_single = arguments->mode == "single";
+    exit_code = report(localize(*arguments));
+  });
+}
+
+}  // namespace camloc::tools

@@ -1,0 +1,152 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// `camloc monitor`: what camlocd publishes, as it arrives.
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <deque>
+#include <lcm/lcm-cpp.hpp>
+#include <memory>
+#include <string>
+
+#include "tools/camloc/commands.h"
+#include "tools/camloc/monitor_view.h"
+#include "tools/camloc/multicast_route.h"
+
+namespace camloc::tools {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct MonitorOptions {
+  std::string lcm_url = kDefaultLcmUrl;
+  std::string pose_channel = "CAMLOC_POSE";
+  std::string status_channel = "CAMLOC_STATUS";
+  bool is_json = false;
+  bool is_plain = false;
+  long long count = 0;      // poses, 0 = no end
+  double timeout_s = 0;     // 0 = wait for ever
+};
+
+constexpr const char* kHints =
+    "  is the daemon running?            camloc ctl status\n"
+    "  does it publish on this URL?      [lcm] url in /etc/camloc/camlocd.toml, --lcm-url here\n"
+    "  is there a multicast route?       camloc doctor\n"
+    "  other machine or namespace?       the default URL has ttl=0 and stays on this machine\n";
+
+double seconds_between(Clock::time_point from, Clock::time_point to) { return std::chrono::duration<double>(to - from).count(); }
+
+/// Receives and shows. Not thread-safe; LCM calls back from handleTimeout only.
+class Monitor {
+ public:
+  explicit Monitor(const MonitorOptions& options)
+      : options_(options), is_screen_(!options.is_json && !options.is_plain && ::isatty(STDOUT_FILENO) == 1), start_(Clock::now()) {}
+
+  void on_pose(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+    pose_t pose;
+    if (pose.decode(buffer->data, 0, static_cast<int>(buffer->data_size)) < 0) return refuse(channel);
+    const auto now = Clock::now();
+    arrivals_.push_back(now);
+    while (seconds_between(arrivals_.front(), now) > 2) arrivals_.pop_front();
+    ++state_.num_poses;
+    if (pose.state == pose_t::LOCALIZED) ++state_.num_localized;
+    if (options_.is_json) {
+      std::printf("%s\n", dump(pose_json(pose)).c_str());
+    } else if (!is_screen_) {
+      std::printf("%s\n", pose_line(pose).c_str());
+    }
+    state_.pose = std::move(pose);
+  }
+
+  void on_status(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+    status_t status;
+    if (status.decode(buffer->data, 0, static_cast<int>(buffer->data_size)) < 0) return refuse(channel);
+    const bool is_news = !state_.status || state_.status->state_text != status.state_text || state_.status->map_id != status.map_id ||
+                         state_.status->is_calibration_suspect != status.is_calibration_suspect;
+    if (options_.is_json) {
+      std::printf("%s\n", dump(status_json(status)).c_str());
+    } else if (!is_screen_ && is_news) {
+      std::printf("%s\n", status_line(status).c_str());
+    }
+    state_.status = std::move(status);
+  }
+
+  /// Draws at most ten times a second.
+  void refresh() {
+    const auto now = Clock::now();
+    if (!is_screen_ || seconds_between(last_draw_, now) < 0.1) return;
+    last_draw_ = now;
+    state_.rate_hz = arrivals_.size() < 2 ? 0 : static_cast<double>(arrivals_.size() - 1) / seconds_between(arrivals_.front(), arrivals_.back());
+    state_.seconds_since_pose = silence_s();
+    std::printf("\x1b[H\x1b[J%s", monitor_screen(state_).c_str());
+  }
+
+  [[nodiscard]] long long num_poses() const { return state_.num_poses; }
+  [[nodiscard]] bool has_heard() const { return state_.num_poses > 0 || state_.status.has_value(); }
+  [[nodiscard]] double silence_s() const { return seconds_between(arrivals_.empty() ? start_ : arrivals_.back(), Clock::now()); }
+
+ private:
+  /// Text from a message may be no UTF-8.
+  static std::string dump(const nlohmann::json& record) { return record.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); }
+
+  void refuse(const std::string& channel) {
+    if (has_refused_) return;
+    has_refused_ = true;
+    std::fprintf(stderr, "camloc: messages on %s are of another type or version than this program reads; skipping them\n", channel.c_str());
+  }
+
+  const MonitorOptions& options_;
+  bool is_screen_;
+  bool has_refused_ = false;
+  Clock::time_point start_;
+  Clock::time_point last_draw_{};
+  std::deque<Clock::time_point> arrivals_;  // of the last two seconds, at least one
+  MonitorState state_;
+};
+
+int run(const MonitorOptions& options) {
+  const auto route = find_multicast_route(options.lcm_url);
+  if (!route) return report(route.status());
+  lcm::LCM lcm(options.lcm_url);
+  if (!lcm.good()) return report({ErrorCode::kUnavailable, "LCM cannot open " + options.lcm_url + "; see 'camloc doctor'"});
+  Monitor monitor(options);
+  lcm.subscribe(options.pose_channel, &Monitor::on_pose, &monitor);
+  lcm.subscribe(options.status_channel, &Monitor::on_status, &monitor);
+
+  bool has_hinted = false;
+  while (options.count == 0 || monitor.num_poses() < options.count) {
+    if (lcm.handleTimeout(100) < 0) break;  // a log file ends this way
+    monitor.refresh();
+    std::fflush(stdout);
+    if (options.timeout_s > 0 && monitor.silence_s() > options.timeout_s) {
+      std::fprintf(stderr, "camloc: no pose on %s for %g s (%s)\n%s", options.pose_channel.c_str(), options.timeout_s, options.lcm_url.c_str(), kHints);
+      return 1;
+    }
+    if (!has_hinted && options.timeout_s <= 0 && !monitor.has_heard() && monitor.silence_s() > 3) {
+      has_hinted = true;
+      std::fprintf(stderr, "camloc: nothing on %s yet, still waiting (%s)\n%s", options.pose_channel.c_str(), options.lcm_url.c_str(), kHints);
+    }
+  }
+  std::fflush(stdout);
+  if (monitor.num_poses() > 0 && monitor.num_poses() >= options.count) return 0;
+  return report({ErrorCode::kEnd, options.lcm_url + " ended after " + std::to_string(monitor.num_poses()) + " poses"});
+}
+
+}  // namespace
+
+void add_monitor_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<MonitorOptions>();
+  CLI::App* command = app.add_subcommand("monitor", "Show the poses camlocd publishes");
+  command->add_option("--lcm-url", options->lcm_url, "LCM URL; file://LOG?mode=r reads a log")->capture_default_str();
+  command->add_option("--channel", options->pose_channel, "channel of the poses")->capture_default_str();
+  command->add_option("--status-channel", options->status_channel, "channel of the status")->capture_default_str();
+  command->add_option("--count", options->count, "end after so many poses")->check(CLI::NonNegativeNumber);
+  command->add_option("--timeout", options->timeout_s, "fail when no pose arrives for so many seconds (default: wait)")->check(CLI::NonNegativeNumber);
+  command->add_flag("--json", options->is_json, "one JSON object a line");
+  command->add_flag("--plain", options->is_plain, "lines instead of the live view, also on a terminal");
+  command->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace camloc::tools

@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// `camloc COMMAND`: the commands built in below, or the program camloc-COMMAND.
+#include <array>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "tools/camloc/commands.h"
+#include "tools/camloc/program.h"
+
+namespace {
+
+using camloc::tools::exec_program;
+using camloc::tools::find_program;
+
+struct Command {
+  const char* name;
+  void (*add)(CLI::App& app, int& exit_code);
+};
+
+constexpr std::array kCommands{
+    Command{"monitor", camloc::tools::add_monitor_command},
+    Command{"ctl", camloc::tools::add_ctl_command},
+    Command{"doctor", camloc::tools::add_doctor_command},
+    Command{"frames", camloc::tools::add_frames_command},
+};
+/// Sub-commands of `camloc map` that are built in; the others belong to the program camloc-map.
+const std::vector<std::string> kMapCommands{"info", "verify"};
+const char* const kProgramsHelp =
+    "Programs of the package camloc-tools, run as `camloc NAME`:\n"
+    "  map build                   Build a map from a recorded walk\n"
+    "  sim                         Write a synthetic building with its walks";
+
+bool is_built_in(const CLI::App& app, const std::string& name) {
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (command->get_name() == name) return true;
+  }
+  return false;
+}
+
+/// Whether `camloc arguments...` is a matter of the program camloc-<arguments[0]>.
+bool is_external(const CLI::App& app, const std::vector<std::string>& arguments) {
+  if (arguments.empty() || arguments[0].empty() || arguments[0][0] == '-') return false;
+  if (arguments[0] != "map") return !is_built_in(app, arguments[0]);
+  if (!is_built_in(app, "map")) return true;
+  return arguments.size() > 1 && arguments[1][0] != '-' &&
+         std::find(kMapCommands.begin(), kMapCommands.end(), arguments[1]) == kMapCommands.end();
+}
+
+/// Becomes camloc-X; returns 2 where there is none.
+int run_external(const CLI::App& app, const std::vector<std::string>& arguments) {
+  const auto program = find_program("camloc-" + arguments[0]);
+  if (program) return camloc::tools::report(exec_program(*program, {arguments.begin() + 1, arguments.end()}));
+
+  std::vector<std::string> known{"map", "sim"};
+  for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
+  std::string hint = "see 'camloc --help'";
+  if (arguments[0] == "map" || arguments[0] == "sim") {
+    hint = "install the package camloc-tools";
+  } else if (const std::string closest = camloc::tools::closest_word(arguments[0], known); !closest.empty()) {
+    hint = "did you mean '" + closest + "'?";
+  }
+  std::fprintf(stderr, "camloc: no command '%s' and no program camloc-%s; %s\n", arguments[0].c_str(), arguments[0].c_str(), hint.c_str());
+  return 2;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  int exit_code = 0;
+  CLI::App app("Where is this camera in the building? Tools around camlocd and its maps.", "camloc");
+  app.set_version_flag("--version", "camloc " CAMLOC_VERSION);
+  app.require_subcommand(1);
+  app.footer(kProgramsHelp);
+  for (const auto& command : kCommands) command.add(app, exit_code);
+  if (is_external(app, arguments)) return run_external(app, arguments);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    std::fprintf(stderr, "camloc: %s; see 'camloc%s --help'\n", error.what(),
+                 arguments.empty() || !is_built_in(app, arguments[0]) ? "" : (" " + arguments[0]).c_str());
+    return 2;
+  }
+  return exit_code;
+}

@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/camloc/monitor_view.h"
+
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <array>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <vector>
+
+namespace camloc::tools {
+namespace {
+
+constexpr std::array kStageNames{"extract", "candidates", "match", "estimate", "verify", "total"};
+constexpr double kDegreesPerRadian = 57.29577951308232;
+
+__attribute__((format(printf, 1, 2))) std::string print(const char* format, ...) {
+  std::array<char, 512> text{};
+  va_list arguments;
+  va_start(arguments, format);
+  const int length = std::vsnprintf(text.data(), text.size(), format, arguments);
+  va_end(arguments);
+  return {text.data(), std::min(static_cast<std::size_t>(std::max(length, 0)), text.size() - 1)};
+}
+
+bool has_pose(const pose_t& pose) { return pose.state == pose_t::LOCALIZED || pose.state == pose_t::COASTING; }
+
+/// Control bytes of a message must not reach the terminal.
+std::string printable(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
+  }
+  return text;
+}
+
+double largest_sigma(const Eigen::Matrix3d& covariance) {
+  if (!covariance.allFinite()) return std::nan("");
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
+}
+
+std::string age_text(const pose_t& pose) { return pose.age_us < 0 ? "unknown" : print("%.1f ms", pose.age_us / 1e3); }
+
+std::vector<std::string> warnings(const MonitorState& state) {
+  std::vector<std::string> texts;
+  if (state.seconds_since_pose > 1) texts.push_back(print("no pose for %.0f s", state.seconds_since_pose));
+  if (!state.status) return texts;
+  const status_t& status = *state.status;
+  if (status.is_calibration_suspect != 0) {
+    texts.push_back(print("calibration suspect: the images fit the map with %.3f times the focal length of the camera file", status.focal_scale));
+  }
+  if (status.frames_corrupt > 0) texts.push_back(print("%lld corrupt frames", static_cast<long long>(status.frames_corrupt)));
+  if (status.map_reload_failures > 0) {
+    texts.push_back(print("%lld map reloads refused, the old map is kept", static_cast<long long>(status.map_reload_failures)));
+  }
+  if (status.source_restarts > 0) texts.push_back(print("camera restarted %lld times", static_cast<long long>(status.source_restarts)));
+  return texts;
+}
+
+}  // namespace
+
+std::string state_name(int state) {
+  static constexpr std::array kNames{"NO_CAMERA", "NO_MAP", "LOST", "COARSE", "LOCALIZED", "COASTING"};
+  return state >= 0 && state < static_cast<int>(kNames.size()) ? kNames[static_cast<std::size_t>(state)] : "state " + std::to_string(state);
+}
+
+PoseSigma pose_sigma(const pose_t& pose) {
+  using RowMajor = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
+  const Eigen::Map<const RowMajor> covariance(&pose.covariance[0]);
+  return {largest_sigma(covariance.topLeftCorner<3, 3>()), largest_sigma(covariance.bottomRightCorner<3, 3>())};
+}
+
+std::string pose_line(const pose_t& pose) {
+  std::string line = print("%lld.%06lld %-9s", static_cast<long long>(pose.utime / 1000000), static_cast<long long>(pose.utime % 1000000),
+                           state_name(pose.state).c_str());
+  if (has_pose(pose)) {
+    const PoseSigma sigma = pose_sigma(pose);
+    line += print("  %s [%+.3f %+.3f %+.3f] m  sigma %.1f cm %.2f deg  quality %d", printable(pose.parent_frame).c_str(), pose.pos[0], pose.pos[1],
+                  pose.pos[2], 100 * sigma.position_m, kDegreesPerRadian * sigma.rotation_rad, static_cast<int>(pose.quality));
+  }
+  if (pose.state != pose_t::LOCALIZED) line += "  " + printable(pose.reason_text);
+  line += print("  inliers %d/%d", pose.num_inliers, pose.num_matches);
+  line += print("  latency %.1f ms  age %s", pose.latency_us[5] / 1e3, age_text(pose).c_str());
+  return line;
+}
+
+std::string status_line(const status_t& status) {
+  std::string line = print("status %s", state_name(status.state).c_str());
+  line += "  " + printable(status.state_text) + "  source " + printable(status.source) + "  map " + printable(status.map_path);
+  line += print("  %.1f Hz  dropped %lld  %.1f MB", status.frame_rate_hz, static_cast<long long>(status.frames_dropped),
+                static_cast<double>(status.rss_bytes) / 1e6);
+  MonitorState only_status;
+  only_status.status = status;
+  for (const auto& warning : warnings(only_status)) line += "  WARNING: " + warning;
+  return line;
+}
+
+nlohmann::json pose_json(const pose_t& pose) {
+  nlohmann::json record{{"type", "pose"},
+                        {"utime", pose.utime},
+                        {"sequence", pose.sequence},
+                        {"map_id", pose.map_id},
+                        {"parent_frame", pose.parent_frame},
+                        {"child_frame", pose.child_frame},
+                        {"pos", std::vector<double>(std::begin(pose.pos), std::end(pose.pos))},
+                        {"orientation_wxyz", std::vector<double>(std::begin(pose.orientation), std::end(pose.orientation))},
+                        {"covariance", std::vector<double>(std::begin(pose.covariance), std::end(pose.covariance))},
+                        {"state", static_cast<int>(pose.state)},
+                        {"state_name", state_name(pose.state)},
+                        {"reason", static_cast<int>(pose.reason)},
+                        {"reason_text", pose.reason_text},
+                        {"quality", static_cast<int>(pose.quality)},
+                        {"num_features", pose.num_features},
+                        {"num_matches", pose.num_matches},
+                        {"num_inliers", pose.num_inliers},
+                        {"reset_counter", pose.reset_counter},
+                        {"jump_m", pose.jump_m},
+                        {"age_us", pose.age_us}};
+  for (std::size_t i = 0; i < kStageNames.size(); ++i) record["latency_us"][kStageNames[i]] = pose.latency_us[i];
+  return record;
+}
+
+nlohmann::json status_json(const status_t& status) {
+  return {{"type", "status"},
+          {"utime", status.utime},
+          {"state", static_cast<int>(status.state)},
+          {"state_name", state_name(status.state)},
+          {"state_text", status.state_text},
+          {"source", status.source},
+          {"map_path", status.map_path},
+          {"map_id", status.map_id},
+          {"uptime_us", status.uptime_us},
+          {"frames_received", status.frames_received},
+          {"frames_dropped", status.frames_dropped},
+          {"frames_corrupt", status.frames_corrupt},
+          {"frames_localized", status.frames_localized},
+          {"poses_published", status.poses_published},
+          {"reset_counter", status.reset_counter},
+          {"map_reloads", status.map_reloads},
+          {"map_reload_failures", status.map_reload_failures},
+          {"source_restarts", status.source_restarts},
+          {"frame_rate_hz", status.frame_rate_hz},
+          {"latency_p50_ms", status.latency_p50_ms},
+          {"latency_max_ms", status.latency_max_ms},
+          {"rss_bytes", status.rss_bytes},
+          {"is_calibration_suspect", status.is_calibration_suspect != 0},
+          {"focal_scale", status.focal_scale}};
+}
+
+std::string monitor_screen(const MonitorState& state) {
+  std::string screen;
+  if (state.pose) {
+    const pose_t& pose = *state.pose;
+    screen += "state     " + state_name(pose.state) + (pose.reason_text.empty() ? "" : "  (" + printable(pose.reason_text) + ")") + "\n";
+    if (has_pose(pose)) {
+      const PoseSigma sigma = pose_sigma(pose);
+      screen += print("position  %+9.3f %+9.3f %+9.3f m in %s, sigma %.1f cm\n", pose.pos[0], pose.pos[1], pose.pos[2],
+                      printable(pose.parent_frame).c_str(), 100 * sigma.position_m);
+      screen += print("rotation  %+9.4f %+9.4f %+9.4f %+9.4f (w x y z), sigma %.2f deg\n", pose.orientation[0], pose.orientation[1],
+                      pose.orientation[2], pose.orientation[3], kDegreesPerRadian * sigma.rotation_rad);
+    } else {
+      screen += "position  none\nrotation  none\n";
+    }
+    screen += print("quality   %d, %d inliers of %d matches of %d features\n", static_cast<int>(pose.quality), pose.num_inliers, pose.num_matches,
+                    pose.num_features);
+    screen += print("latency   %.1f ms in the localizer, capture to publishing %s\n", pose.latency_us[5] / 1e3, age_text(pose).c_str());
+    screen += print("poses     %lld, %.1f %% localized, %.1f Hz, %d resets\n", state.num_poses,
+                    100.0 * static_cast<double>(state.num_localized) / static_cast<double>(std::max(1LL, state.num_poses)), state.rate_hz,
+                    pose.reset_counter);
+  } else {
+    screen += "state     waiting for the first pose\n";
+  }
+  if (state.status) {
+    screen += "source    " + printable(state.status->source) + "\n";
+    screen += "map       " + printable(state.status->map_path) + "\n";
+    screen += print("daemon    up %.0f s, %.1f Hz, %lld of %lld frames dropped, %.1f MB\n", static_cast<double>(state.status->uptime_us) / 1e6,
+                    state.status->frame_rate_hz, static_cast<long long>(state.status->frames_dropped),
+                    static_cast<long long>(state.status->frames_received), static_cast<double>(state.status->rss_bytes) / 1e6);
+  }
+  for (const auto& warning : warnings(state)) screen += "WARNING   " + warning + "\n";
+  return screen;
+}
+
+}  // namespace camloc::tools

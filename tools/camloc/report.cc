@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// How the programs say that something went wrong: one line on stderr and an exit code.
+#include <cstdio>
+
+#include "tools/camloc/commands.h"
+
+namespace camloc::tools {
+
+int report(const Status& status) {
+  if (status.is_ok()) return 0;
+  std::fprintf(stderr, "camloc: %s\n", status.message().c_str());
+  return status.code() == ErrorCode::kInvalid ? 2 : 1;
+}
+
+}  // namespace camloc::tools

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// A recorded sequence through the localizer, frame by frame: what `localize` and `bench` share.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/localize/localizer.h"
+#include "core/map/map_view.h"
+#include "drivers/frame_source.h"
+#include "tools/camloc/perturbation.h"
+
+namespace camloc::tools {
+
+struct SequenceRunOptions {
+  std::string map_path;
+  std::string sequence_url;
+  std::string camera_path;
+  std::string frames;                 ///< "start:stop:step[,...]", empty = all
+  std::string exclude;
+  bool is_single = false;             ///< every frame is a kidnapped robot
+  bool use_depth = true;
+  std::vector<std::string> perturbations;
+};
+
+/// Map, camera and source, opened and checked against each other. Members are destroyed in reverse order.
+struct SequenceRun {
+  std::unique_ptr<MapView> map;
+  RgbdCamera camera;
+  std::unique_ptr<FrameSource> source;
+  std::vector<Perturbation> perturbations;
+  std::unique_ptr<Localizer> localizer;
+};
+
+/// Nanoseconds of a monotonic clock, for LocalizerOptions::now_ns.
+[[nodiscard]] std::int64_t monotonic_ns();
+
+[[nodiscard]] Result<SequenceRun> open_sequence_run(const SequenceRunOptions& options);
+
+struct RunCounts {
+  std::uint64_t num_frames = 0;
+  std::uint64_t num_corrupt = 0;      ///< frames that could not be decoded
+};
+/// Calls `on_frame` with every decoded and perturbed frame until the source ends.
+[[nodiscard]] Result<RunCounts> for_each_frame(SequenceRun& run, const std::function<void(const Frame&)>& on_frame);
+
+/// The source URL with a frame selection added.
+[[nodiscard]] std::string with_selection(const std::string& url, const std::string& frames, const std::string& exclude);
+
+}  // namespace camloc::tools

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/camloc/trajectory_error.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+namespace camloc::tools {
+namespace {
+
+/// 95 % point of the chi-square distribution with 6 degrees of freedom.
+constexpr double kChiSquare95 = 12.591587;
+
+struct Pair {
+  Rigid3 reference, estimate;
+  std::optional<Matrix6d> covariance;
+};
+
+double quantile(std::vector<double>& values, double fraction) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  const double position = fraction * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(position);
+  const std::size_t above = std::min(below + 1, values.size() - 1);
+  return values[below] + (position - static_cast<double>(below)) * (values[above] - values[below]);
+}
+
+ErrorStatistics statistics(std::vector<double> values) {
+  if (values.empty()) return {};
+  ErrorStatistics out;
+  out.mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  out.median = quantile(values, 0.5);
+  out.p90 = quantile(values, 0.9);
+  out.max = values.back();
+  return out;
+}
+
+Rigid3 rigid_alignment(const std::vector<Pair>& pairs) {
+  if (pairs.size() < 3) return {};
+  Eigen::Matrix3Xd from(3, pairs.size()), to(3, pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    from.col(static_cast<Eigen::Index>(i)) = pairs[i].estimate.translation;
+    to.col(static_cast<Eigen::Index>(i)) = pairs[i].reference.translation;
+  }
+  const Eigen::Matrix4d T = Eigen::umeyama(from, to, false);
+  return {nearest_rotation(T.topLeftCorner<3, 3>()), T.topRightCorner<3, 1>()};
+}
+
+double nees(const Pair& pair) {
+  const Vector6d error = pose_error(pair.reference, pair.estimate);
+  return error.dot(pair.covariance->ldlt().solve(error));
+}
+
+Matrix6d rotated(const Matrix6d& covariance, const Eigen::Quaterniond& rotation) {
+  Matrix6d R = Matrix6d::Zero();
+  R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = rotation.toRotationMatrix();
+  return R * covariance * R.transpose();
+}
+
+}  // namespace
+
+TrajectoryErrors compare(const EstimatedTrajectory& estimate, const ReferencePose& reference, std::uint64_t num_frames, bool align_se3) {
+  TrajectoryErrors errors;
+  errors.num_frames = num_frames;
+  errors.num_localized = estimate.poses.size();
+  std::vector<Pair> pairs;
+  for (const EstimatedPose& pose : estimate.poses) {
+    if (const auto truth = reference(pose.stamp_ns)) pairs.push_back({*truth, pose.T_map_camera, pose.covariance});
+  }
+  errors.num_compared = pairs.size();
+  if (align_se3) {
+    errors.T_reference_estimate = rigid_alignment(pairs);
+    for (Pair& pair : pairs) {
+      pair.estimate = *errors.T_reference_estimate * pair.estimate;
+      if (pair.covariance) pair.covariance = rotated(*pair.covariance, errors.T_reference_estimate->rotation);
+    }
+  }
+
+  std::vector<double> translations, rotations, all_nees;
+  for (const Pair& pair : pairs) {
+    const double translation_m = (pair.reference.translation - pair.estimate.translation).norm();
+    const double rotation_deg = rotation_distance_rad(pair.reference.rotation, pair.estimate.rotation) * 180.0 / std::numbers::pi;
+    translations.push_back(translation_m);
+    rotations.push_back(rotation_deg);
+    for (std::size_t i = 0; i < kErrorLimits.size(); ++i) {
+      if (translation_m <= kErrorLimits[i].translation_m && rotation_deg <= kErrorLimits[i].rotation_deg) errors.share_within[i] += 1;
+    }
+    if (translation_m > kMisleading.translation_m || rotation_deg > kMisleading.rotation_deg) ++errors.num_misleading;
+    if (pair.covariance) all_nees.push_back(nees(pair));
+  }
+  for (double& share : errors.share_within) share = num_frames == 0 ? 0.0 : share / static_cast<double>(num_frames);
+  errors.translation_m = statistics(translations);
+  errors.rotation_deg = statistics(rotations);
+  errors.num_with_covariance = all_nees.size();
+  if (!all_nees.empty()) {
+    const auto inside = std::count_if(all_nees.begin(), all_nees.end(), [](double value) { return value <= kChiSquare95; });
+    errors.share_inside_95 = static_cast<double>(inside) / static_cast<double>(all_nees.size());
+    errors.nees_mean = statistics(all_nees).mean;
+    errors.nees_median = statistics(all_nees).median;
+  }
+  return errors;
+}
+
+}  // namespace camloc::tools

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// How far a trajectory is from a reference: error statistics, shares within the usual limits of all frames, misleading
+// poses, and whether the covariances were honest.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/camloc/trajectory_file.h"
+
+namespace camloc::tools {
+
+struct ErrorStatistics {
+  double median = 0, mean = 0, p90 = 0, max = 0;
+};
+
+/// "Within 5cm/5deg" and so on; the share is of all frames.
+struct ErrorLimit {
+  const char* name;
+  double translation_m, rotation_deg;
+};
+inline constexpr std::array<ErrorLimit, 4> kErrorLimits{{
+    {"2cm_2deg", 0.02, 2}, {"5cm_5deg", 0.05, 5}, {"10cm_10deg", 0.10, 10}, {"35cm_10deg", 0.35, 10}}};
+/// A pose given as LOCALIZED and farther off than this misleads.
+inline constexpr ErrorLimit kMisleading{"misleading", 0.25, 10};
+
+struct TrajectoryErrors {
+  std::uint64_t num_frames = 0;           ///< all frames that were tried
+  std::uint64_t num_localized = 0;        ///< poses in the estimate
+  std::uint64_t num_compared = 0;         ///< of those with a reference pose
+  ErrorStatistics translation_m, rotation_deg;
+  std::array<double, kErrorLimits.size()> share_within{};
+  std::uint64_t num_misleading = 0;
+  std::uint64_t num_with_covariance = 0;
+  double nees_mean = 0, nees_median = 0;  ///< 6 degrees of freedom: 6 and 5.35 when honest
+  double share_inside_95 = 0;             ///< NEES below 12.59
+  std::optional<Rigid3> T_reference_estimate;  ///< of the alignment, when one was asked for
+};
+
+using ReferencePose = std::function<std::optional<Rigid3>(std::int64_t stamp_ns)>;
+
+/// `align_se3`: the rigid motion that brings the estimate closest to the reference is taken out first (Umeyama,
+/// "Least-squares estimation of transformation parameters between two point patterns", 1991; scale 1).
+[[nodiscard]] TrajectoryErrors compare(const EstimatedTrajectory& estimate, const ReferencePose& reference, std::uint64_t num_frames, bool align_se3);
+
+}  // namespace camloc::tools
