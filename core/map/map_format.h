@@ -70,7 +70,8 @@ struct FileHeader {
 static_assert(sizeof(FileHeader) == 64);
 
 enum class SectionId : std::uint32_t {
-  kMeta, kSubmaps, kLandmarks, kDescriptors, kKeyframes, kKeyframeLists, kWords, kWordBegin, kInvertedKeyframes, kInvertedWeights, kWcs,
+  kMeta, kSubmaps, kLandmarks, kDescriptors, kKeyframes, kKeyframeLists,
+  kWords, kWordBegin, kInvertedKeyframes, kInvertedWeights, kWcs,
 };
 inline constexpr std::uint32_t kNumSections = 11;
 inline constexpr std::array<const char*, kNumSections> kSectionNames = {

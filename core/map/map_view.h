@@ -63,7 +63,8 @@ class MapView {
   [[nodiscard]] std::uint32_t submap_of(std::uint32_t landmark) const;
   [[nodiscard]] Eigen::Vector3f position_m(std::uint32_t landmark) const;
   /// Position with the sub-map already known: the fast way to walk through one.
-  [[nodiscard]] static Eigen::Vector3f position_m(const map_format::SubmapRecord& submap, const map_format::LandmarkRecord& landmark) {
+  [[nodiscard]] static Eigen::Vector3f position_m(const map_format::SubmapRecord& submap,
+                                                  const map_format::LandmarkRecord& landmark) {
     const float scale = submap.extent_m * (1.0F / 65535.0F);
     return {submap.origin_m[0] + scale * landmark.position[0], submap.origin_m[1] + scale * landmark.position[1],
             submap.origin_m[2] + scale * landmark.position[2]};

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Replaces a file as a whole or not at all. Whoever opens the path sees the old bytes or the new ones, also after a
+// power cut; whoever has the old file mapped keeps it.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "core/base/result.h"
+
+namespace camloc {
+
+/// Writes a temporary file in the folder of `path`, fsyncs it, renames it and fsyncs the folder. A symbolic link is
+/// followed. The file gets mode 0644 less the umask.
+/// Errors: kIo (disk full, permission, no such folder); `path` is untouched then and the temporary file is gone.
+[[nodiscard]] Status replace_file(const std::string& path, std::span<const std::byte> bytes);
+
+}  // namespace camloc
