@@ -26,6 +26,9 @@ struct MapBuildOptions {
   int appearance_distance = 48;          ///< an observation farther than this from all of a landmark's descriptors adds one
   int max_descriptors_per_landmark = 4;
   int min_observations = 2;              ///< landmarks seen by fewer frames are dropped where others are enough
+  int landmarks_per_view = 400;          ///< a landmark is not needed where all views that see it have this many
+  double max_bytes_per_landmark = 60;    ///< of the whole file: bounds the further descriptors
+  int min_keyframe_gain = 8;             ///< a view that alone sees fewer landmarks is no keyframe; those landmarks go
 };
 
 struct MapBuildReport {
@@ -33,7 +36,9 @@ struct MapBuildReport {
   std::uint64_t num_observations = 0;
   std::uint32_t num_landmarks_before = 0, num_landmarks = 0;  ///< before and after pruning and the byte budget
   std::uint32_t num_keyframes_before = 0, num_keyframes = 0;  ///< views with landmarks, and the set that covers them all
+  std::uint32_t num_descriptors = 0, num_words = 0;
   std::uint64_t file_bytes = 0;
+  std::uint32_t num_consistency_pairs = 0;   ///< pairs of views behind MapData::pose_sigma_m and pose_sigma_rad
 };
 
 class MapBuilder {
@@ -41,8 +46,11 @@ class MapBuilder {
   MapBuilder(const RgbdCamera& camera, const MapBuildOptions& options);
   ~MapBuilder();
 
-  /// One view with its given pose. kInvalid when the image size does not fit the camera.
+  /// One view with its given pose. kInvalid when an image size does not fit the camera or the pose is not finite: the
+  /// frame is skipped and counted, the builder goes on. A frame without depth is skipped, too.
   [[nodiscard]] Status add_frame(const Frame& frame, const Rigid3& T_map_camera);
+  /// Counts so far (frames, observations, landmarks before pruning), for a progress display.
+  [[nodiscard]] MapBuildReport progress() const;
   /// Fuses, covers, prunes to the budget, trains the words. kInvalid when no landmark is left.
   [[nodiscard]] Result<MapData> finish(MapBuildReport* report);
 

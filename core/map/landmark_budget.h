@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Which landmarks are worth their bytes: those that many views see, spread evenly over the views and over each image, so
+// that every mapped view keeps its share. The value of a selection is the sum over all (view, image cell) of the square
+// root of the number of selected landmarks there: submodular, so the greedy choice is within 1 - 1/e of the best
+// (Nemhauser, Wolsey, Fisher, "An analysis of approximations for maximizing submodular set functions", 1978).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/map/landmark_fusion.h"
+
+namespace camloc {
+
+struct LandmarkBudgetOptions {
+  std::uint32_t max_landmarks = 0;         ///< 0 = no limit
+  std::uint32_t min_observations = 2;      ///< landmarks with fewer are taken only for views that need them
+  std::uint32_t wanted_per_view = 400;     ///< a landmark all of whose views have this many is not needed
+  std::uint32_t min_per_view = 60;         ///< a view with fewer needs every landmark it can get
+};
+
+/// Indices of the landmarks to keep, ascending.
+[[nodiscard]] std::vector<std::uint32_t> select_landmarks(std::span<const std::vector<ViewObservation>> views, std::size_t num_landmarks,
+                                                          const LandmarkBudgetOptions& options);
+
+}  // namespace camloc

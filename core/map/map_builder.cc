@@ -1,0 +1,245 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/map/map_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "core/geometry/depth_registration.h"
+#include "core/map/keyframe_cover.h"
+#include "core/map/landmark_budget.h"
+#include "core/map/landmark_fusion.h"
+#include "core/map/map_writer.h"
+#include "core/map/pose_consistency.h"
+#include "core/map/vocabulary.h"
+
+namespace camloc {
+namespace {
+
+constexpr std::size_t kMaxKeyframes = 65535;   // InvertedEntry::keyframe
+constexpr int kMaxBudgetRounds = 5;
+// What a landmark costs in the file: its record, one descriptor, its share of words and lists.
+constexpr double kRecordBytes = 16, kDescriptorBytes = 32, kListEntryBytes = 4, kInvertedEntryBytes = 3, kKeyframeBytes = 40, kFixedBytes = 2048;
+
+std::string size_text(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
+
+FusionOptions fusion_options(const MapBuildOptions& options) {
+  FusionOptions fusion;
+  fusion.radius_px = options.fuse_radius_px;
+  fusion.max_distance = options.fuse_max_distance;
+  fusion.appearance_distance = options.appearance_distance;
+  fusion.max_descriptors = options.max_descriptors_per_landmark;
+  fusion.scale_factor = options.orb.scale_factor;
+  fusion.num_levels = options.orb.num_levels;
+  fusion.max_features = options.orb.num_features;
+  return fusion;
+}
+
+PoseConsistencyOptions consistency_options(const MapBuildOptions& options) {
+  PoseConsistencyOptions consistency;
+  consistency.max_features = options.orb.num_features;
+  return consistency;
+}
+
+}  // namespace
+
+struct MapBuilder::Impl {
+  Impl(const RgbdCamera& rgbd_camera, const MapBuildOptions& build_options)
+      : camera(rgbd_camera),
+        options(build_options),
+        extractor(camera.color.width, camera.color.height, options.orb),
+        rays(camera.color),
+        depth_lookup(camera),
+        fusion(camera.color, camera.depth_noise, fusion_options(options)),
+        consistency(camera, consistency_options(options)) {}
+
+  [[nodiscard]] Status check(const Frame& frame, const Rigid3& T_map_camera) const;
+  [[nodiscard]] ViewFeatures view_features(const Frame& frame, const Rigid3& T_map_camera);
+  [[nodiscard]] MapData select(std::uint32_t max_landmarks);
+  void choose_keyframes(const std::vector<std::uint32_t>& kept, MapData* map);
+  void keep_descriptors(const std::vector<std::uint32_t>& kept, MapData* map) const;
+  void add_words(MapData* map) const;
+
+  RgbdCamera camera;
+  MapBuildOptions options;
+  OrbExtractor extractor;
+  UndistortionTable rays;
+  DepthLookup depth_lookup;
+  LandmarkFusion fusion;
+  PoseConsistency consistency;
+  MapBuildReport report;
+
+  std::vector<MapLandmark> all;                      ///< every fused landmark, set by finish()
+  std::vector<std::vector<std::uint32_t>> support;   ///< observations behind each of their descriptors
+};
+
+MapBuilder::MapBuilder(const RgbdCamera& camera, const MapBuildOptions& options) : impl_(std::make_unique<Impl>(camera, options)) {}
+MapBuilder::~MapBuilder() = default;
+
+Status MapBuilder::add_frame(const Frame& frame, const Rigid3& T_map_camera) {
+  if (const Status status = impl_->check(frame, T_map_camera); !status.is_ok()) {
+    ++impl_->report.num_frames_skipped;
+    return status;
+  }
+  const ViewFeatures view = impl_->view_features(frame, T_map_camera);
+  impl_->fusion.add_view(view);
+  impl_->consistency.add_view(view);
+  ++impl_->report.num_frames;
+  return Status::ok();
+}
+
+MapBuildReport MapBuilder::progress() const {
+  MapBuildReport report = impl_->report;
+  report.num_observations = impl_->fusion.num_observations();
+  report.num_landmarks_before = static_cast<std::uint32_t>(impl_->fusion.num_landmarks());
+  return report;
+}
+
+Status MapBuilder::Impl::check(const Frame& frame, const Rigid3& T_map_camera) const {
+  const std::string what = "frame " + std::to_string(frame.sequence);
+  if (frame.gray.width != camera.color.width || frame.gray.height != camera.color.height || frame.gray.empty()) {
+    return {ErrorCode::kInvalid, what + ": colour image is " + size_text(frame.gray.width, frame.gray.height) + " but camera '" + camera.name + "' has " +
+                                     size_text(camera.color.width, camera.color.height)};
+  }
+  if (frame.depth.empty()) return {ErrorCode::kInvalid, what + ": no depth image"};
+  if (frame.depth.width != camera.depth.width || frame.depth.height != camera.depth.height) {
+    return {ErrorCode::kInvalid, what + ": depth image is " + size_text(frame.depth.width, frame.depth.height) + " but camera '" + camera.name + "' has " +
+                                     size_text(camera.depth.width, camera.depth.height)};
+  }
+  if (!T_map_camera.translation.allFinite() || !T_map_camera.rotation.coeffs().allFinite()) return {ErrorCode::kInvalid, what + ": pose is not finite"};
+  return Status::ok();
+}
+
+ViewFeatures MapBuilder::Impl::view_features(const Frame& frame, const Rigid3& T_map_camera) {
+  ViewFeatures view;
+  view.T_map_camera = T_map_camera;
+  view.stamp_ns = frame.stamp_ns;
+  view.features = extractor.extract(frame.gray);
+  view.normalized.reserve(view.features.size());
+  view.depth_m.reserve(view.features.size());
+  for (const Keypoint& keypoint : view.features.keypoints) {
+    view.normalized.push_back(rays.undistort(keypoint.u, keypoint.v));
+    view.depth_m.push_back(depth_lookup.depth_at(frame.depth, keypoint.u, keypoint.v));
+  }
+  return view;
+}
+
+// Landmarks, keyframes and descriptors of a map with at most this many landmarks; no words yet.
+MapData MapBuilder::Impl::select(std::uint32_t max_landmarks) {
+  LandmarkBudgetOptions budget;
+  budget.max_landmarks = max_landmarks;
+  budget.min_observations = static_cast<std::uint32_t>(std::max(options.min_observations, 1));
+  budget.wanted_per_view = static_cast<std::uint32_t>(std::max(options.landmarks_per_view, 1));
+  std::vector<std::uint32_t> kept = select_landmarks(fusion.views(), all.size(), budget);
+  MapData map;
+  map.camera = camera;
+  map.orb_scale_factor = options.orb.scale_factor;
+  map.orb_num_levels = static_cast<std::uint32_t>(options.orb.num_levels);
+  choose_keyframes(kept, &map);
+  return map;
+}
+
+// Keyframes that cover the kept landmarks, with their lists; landmarks that only a superfluous view would cover go.
+void MapBuilder::Impl::choose_keyframes(const std::vector<std::uint32_t>& kept, MapData* map) {
+  constexpr std::uint32_t kGone = 0xFFFFFFFF;
+  std::vector<std::uint32_t> new_index(all.size(), kGone);
+  for (std::uint32_t i = 0; i < kept.size(); ++i) new_index[kept[i]] = i;
+  std::vector<std::vector<std::uint32_t>> lists(fusion.views().size());
+  report.num_keyframes_before = 0;
+  for (std::size_t v = 0; v < lists.size(); ++v) {
+    for (const ViewObservation& o : fusion.views()[v]) {
+      if (new_index[o.landmark] != kGone) lists[v].push_back(new_index[o.landmark]);
+    }
+    if (!lists[v].empty()) ++report.num_keyframes_before;
+  }
+  const KeyframeCover cover = cover_with_keyframes(lists, kept.size(), static_cast<std::uint32_t>(std::max(options.min_keyframe_gain, 1)));
+  std::vector<std::uint32_t> covered, renumbered(kept.size(), kGone);
+  for (std::uint32_t i = 0; i < kept.size(); ++i) {
+    if (std::binary_search(cover.uncovered.begin(), cover.uncovered.end(), i)) continue;
+    renumbered[i] = static_cast<std::uint32_t>(covered.size());
+    covered.push_back(kept[i]);
+  }
+  for (const std::uint32_t v : cover.views) {
+    MapKeyframe& keyframe = map->keyframes.emplace_back();
+    keyframe.T_map_camera = fusion.poses()[v];
+    for (const std::uint32_t i : lists[v]) keyframe.landmarks.push_back(renumbered[i]);
+    std::sort(keyframe.landmarks.begin(), keyframe.landmarks.end());
+  }
+  keep_descriptors(covered, map);
+}
+
+// One descriptor for each landmark; further ones, those that stand for the most observations first, as far as the bytes
+// per landmark allow.
+void MapBuilder::Impl::keep_descriptors(const std::vector<std::uint32_t>& kept, MapData* map) const {
+  struct Further {
+    std::uint32_t support, landmark;
+    std::size_t descriptor;
+  };
+  std::vector<Further> further;
+  for (std::uint32_t i = 0; i < kept.size(); ++i) {
+    MapLandmark& landmark = map->landmarks.emplace_back(all[kept[i]]);
+    for (std::size_t d = 1; d < landmark.descriptors.size(); ++d) further.push_back({support[kept[i]][d], i, d});
+    landmark.descriptors.resize(1);
+  }
+  std::stable_sort(further.begin(), further.end(), [](const Further& a, const Further& b) { return a.support > b.support; });
+  std::size_t entries = 0;
+  for (const MapKeyframe& keyframe : map->keyframes) entries += keyframe.landmarks.size();
+  const auto n = static_cast<double>(kept.size());
+  const double words = options.num_words > 0 ? options.num_words : default_num_words(kept.size());
+  double bytes = kFixedBytes + n * (kRecordBytes + kDescriptorBytes) + words * (kDescriptorBytes + 8) +
+                 static_cast<double>(entries) * (kListEntryBytes + kInvertedEntryBytes) + static_cast<double>(map->keyframes.size()) * kKeyframeBytes;
+  for (const Further& f : further) {
+    bytes += kDescriptorBytes + kInvertedEntryBytes;
+    if (f.support < 2 || bytes > options.max_bytes_per_landmark * n) break;
+    map->landmarks[f.landmark].descriptors.push_back(all[kept[f.landmark]].descriptors[f.descriptor]);
+  }
+}
+
+void MapBuilder::Impl::add_words(MapData* map) const {
+  std::vector<Descriptor> descriptors;
+  for (const MapLandmark& landmark : map->landmarks) descriptors.insert(descriptors.end(), landmark.descriptors.begin(), landmark.descriptors.end());
+  map->words = train_vocabulary(descriptors, options.num_words > 0 ? options.num_words : default_num_words(map->landmarks.size()));
+  build_inverted_file(map);
+}
+
+Result<MapData> MapBuilder::finish(MapBuildReport* report) {
+  Impl& self = *impl_;
+  self.all = self.fusion.landmarks(&self.support);
+  const PoseConsistencyEstimate consistency = self.consistency.estimate();
+  const std::uint64_t max_bytes = self.options.max_bytes;
+  std::uint32_t max_landmarks = 0;
+  if (max_bytes > 0) max_landmarks = static_cast<std::uint32_t>(std::max(1.0, static_cast<double>(max_bytes) / self.options.max_bytes_per_landmark));
+  for (int round = 0; round < kMaxBudgetRounds; ++round) {
+    MapData map = self.select(max_landmarks);
+    if (map.landmarks.empty()) return {ErrorCode::kInvalid, "map: no landmark is left; are there textured surfaces with depth in the frames, and are the poses right?"};
+    if (map.keyframes.size() > kMaxKeyframes) return {ErrorCode::kUnsupported, "map: more than 65535 keyframes; select fewer frames"};
+    self.add_words(&map);
+    map.pose_sigma_m = consistency.sigma_m;
+    map.pose_sigma_rad = consistency.sigma_rad;
+    auto bytes = serialize_map(map);
+    if (!bytes.is_ok()) return bytes.status();
+    const std::uint64_t size = bytes->size();
+    if (max_bytes > 0 && size > max_bytes) {
+      const double shrink = 0.99 * static_cast<double>(max_bytes) / static_cast<double>(size);
+      max_landmarks = static_cast<std::uint32_t>(std::max(1.0, shrink * static_cast<double>(map.landmarks.size())));
+      continue;
+    }
+    MapBuildReport& r = self.report;
+    const MapBuildReport counted = progress();
+    r.num_observations = counted.num_observations;
+    r.num_landmarks_before = counted.num_landmarks_before;
+    r.num_landmarks = static_cast<std::uint32_t>(map.landmarks.size());
+    r.num_keyframes = static_cast<std::uint32_t>(map.keyframes.size());
+    r.num_descriptors = 0;
+    for (const MapLandmark& landmark : map.landmarks) r.num_descriptors += static_cast<std::uint32_t>(landmark.descriptors.size());
+    r.num_words = static_cast<std::uint32_t>(map.words.size());
+    r.file_bytes = size;
+    r.num_consistency_pairs = consistency.num_pairs;
+    if (report != nullptr) *report = r;
+    return map;
+  }
+  return {ErrorCode::kInvalid, "map: " + std::to_string(max_bytes) + " bytes are not enough for a map of these frames; raise the byte budget"};
+}
+
+}  // namespace camloc

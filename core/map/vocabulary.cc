@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/map/vocabulary.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <map>
+
+#include "core/features/hamming.h"
+
+namespace camloc {
+namespace {
+
+// SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
+class SplitMix {
+ public:
+  explicit SplitMix(std::uint64_t seed) : state_(seed) {}
+  std::uint64_t next() {
+    std::uint64_t x = (state_ += 0x9E3779B97F4A7C15U);
+    x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9U;
+    x = (x ^ (x >> 27)) * 0x94D049BB133111EBU;
+    return x ^ (x >> 31);
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+// Each further seed is drawn with a probability proportional to its squared distance to the nearest seed so far. Integers
+// throughout: the sum of the squares fits easily (256^2 times 2^40 descriptors).
+std::vector<Descriptor> draw_seeds(std::span<const Descriptor> descriptors, std::size_t num_words) {
+  SplitMix random(0x63616D6C6F63);
+  std::vector<Descriptor> seeds{descriptors[random.next() % descriptors.size()]};
+  std::vector<std::uint16_t> nearest(descriptors.size(), 257), distance(descriptors.size());
+  while (seeds.size() < num_words) {
+    hamming_distances(seeds.back(), descriptors, distance.data());
+    std::uint64_t total = 0;
+    for (std::size_t i = 0; i < descriptors.size(); ++i) {
+      nearest[i] = std::min(nearest[i], distance[i]);
+      total += static_cast<std::uint64_t>(nearest[i]) * nearest[i];
+    }
+    if (total == 0) break;  // fewer different descriptors than words
+    std::uint64_t mark = random.next() % total;
+    std::size_t chosen = 0;
+    for (;; ++chosen) {
+      const std::uint64_t weight = static_cast<std::uint64_t>(nearest[chosen]) * nearest[chosen];
+      if (mark < weight) break;
+      mark -= weight;
+    }
+    seeds.push_back(descriptors[chosen]);
+  }
+  return seeds;
+}
+
+// Bit-wise majority of each cluster; a tie keeps the old bit, an empty cluster its old centre.
+void move_to_majority(std::span<const Descriptor> descriptors, std::span<const NearestDescriptor> nearest, std::vector<Descriptor>* words) {
+  std::vector<std::array<std::int32_t, 256>> balance(words->size());
+  for (std::size_t i = 0; i < descriptors.size(); ++i) {
+    auto& sums = balance[nearest[i].index];
+    for (std::size_t bit = 0; bit < 256; ++bit) sums[bit] += (descriptors[i].bits[bit / 64] >> (bit % 64) & 1U) != 0 ? 1 : -1;
+  }
+  for (std::size_t w = 0; w < words->size(); ++w) {
+    for (std::size_t bit = 0; bit < 256; ++bit) {
+      const std::uint64_t mask = std::uint64_t{1} << (bit % 64);
+      std::uint64_t& bits = (*words)[w].bits[bit / 64];
+      if (balance[w][bit] > 0) bits |= mask;
+      if (balance[w][bit] < 0) bits &= ~mask;
+    }
+  }
+}
+
+void remove_duplicates(std::vector<Descriptor>* words) {
+  std::sort(words->begin(), words->end(), [](const Descriptor& a, const Descriptor& b) { return a.bits < b.bits; });
+  words->erase(std::unique(words->begin(), words->end()), words->end());
+}
+
+}  // namespace
+
+int default_num_words(std::size_t num_descriptors) {
+  const std::size_t words = std::clamp<std::size_t>(num_descriptors / 24, 64, 2048);
+  return static_cast<int>(std::min(words, num_descriptors));
+}
+
+std::vector<Descriptor> train_vocabulary(std::span<const Descriptor> descriptors, int num_words, int max_iterations) {
+  if (descriptors.empty() || num_words <= 0) return {};
+  std::vector<Descriptor> words = draw_seeds(descriptors, std::min(static_cast<std::size_t>(num_words), descriptors.size()));
+  std::vector<NearestDescriptor> nearest(descriptors.size());
+  std::uint64_t last_total = ~std::uint64_t{0};
+  for (int iteration = 0; iteration < max_iterations; ++iteration) {
+    nearest_descriptors(descriptors, words, nearest.data());
+    std::uint64_t total = 0;
+    for (const NearestDescriptor& n : nearest) total += n.distance;
+    if (total >= last_total) break;
+    last_total = total;
+    move_to_majority(descriptors, nearest, &words);
+  }
+  remove_duplicates(&words);
+  return words;
+}
+
+double inverse_document_frequency(std::size_t num_keyframes, std::size_t num_with_word) {
+  return std::log(1.0 + static_cast<double>(num_keyframes) / static_cast<double>(std::max<std::size_t>(num_with_word, 1)));
+}
+
+void build_inverted_file(MapData* map) {
+  assert(map->keyframes.size() <= 65536);
+  map->inverted_file.assign(map->words.size(), {});
+  if (map->words.empty()) return;
+  std::vector<Descriptor> descriptors;
+  std::vector<std::size_t> first;
+  for (const MapLandmark& landmark : map->landmarks) {
+    first.push_back(descriptors.size());
+    descriptors.insert(descriptors.end(), landmark.descriptors.begin(), landmark.descriptors.end());
+  }
+  first.push_back(descriptors.size());
+  std::vector<NearestDescriptor> nearest(descriptors.size());
+  nearest_descriptors(descriptors, map->words, nearest.data());
+
+  std::vector<std::map<std::uint32_t, double>> frequency(map->keyframes.size());  // word -> number of descriptors
+  std::vector<std::size_t> num_with_word(map->words.size(), 0);
+  for (std::size_t k = 0; k < map->keyframes.size(); ++k) {
+    for (const std::uint32_t landmark : map->keyframes[k].landmarks) {
+      for (std::size_t d = first[landmark]; d < first[landmark + 1]; ++d) frequency[k][nearest[d].index] += 1.0;
+    }
+    for (const auto& entry : frequency[k]) ++num_with_word[entry.first];
+  }
+  for (std::size_t k = 0; k < map->keyframes.size(); ++k) {
+    double sum_squared = 0;
+    for (auto& [word, weight] : frequency[k]) {
+      weight *= inverse_document_frequency(map->keyframes.size(), num_with_word[word]);
+      sum_squared += weight * weight;
+    }
+    for (const auto& [word, weight] : frequency[k]) {
+      const long scaled = std::lround(255.0 * weight / std::sqrt(sum_squared));
+      map->inverted_file[word].push_back({static_cast<std::uint16_t>(k), static_cast<std::uint8_t>(std::clamp(scaled, 1L, 255L))});
+    }
+  }
+}
+
+}  // namespace camloc
