@@ -25,7 +25,7 @@ struct Match {
 class FeatureGrid {
  public:
   FeatureGrid(int width, int height, int max_features, int cell_px = 24);
-  /// Refills the buckets; features beyond max_features are ignored.
+  /// Refills the buckets; features beyond max_features are ignored, features outside the image go to the nearest bucket.
   void assign(std::span<const Keypoint> keypoints);
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
@@ -34,6 +34,8 @@ class FeatureGrid {
   [[nodiscard]] std::span<const std::int32_t> bucket(int column, int row) const;
 
  private:
+  [[nodiscard]] int bucket_of(const Keypoint& keypoint) const;
+
   int columns_, rows_, cell_px_, max_features_;
   std::vector<std::int32_t> bucket_begin_, feature_;
 };
@@ -63,9 +65,19 @@ class GuidedMatcher {
                                std::span<const Descriptor> descriptors);
 
  private:
+  struct WindowFeature {
+    std::int32_t feature;
+    std::int32_t level;
+    std::uint16_t distance;
+  };
+  void collect_window(const Features& features, const FeatureGrid& grid, const ProjectedLandmark& landmark,
+                      std::span<const Descriptor> descriptors);
+  [[nodiscard]] Match best_in_window() const;
+
   GuidedMatcherOptions options_;
   std::vector<Match> best_of_feature_;
   std::vector<Match> matches_;
+  std::vector<WindowFeature> window_;  ///< features in the window of the landmark at hand
 };
 
 /// Candidate descriptors gathered from the map, structure of arrays. Capacity is fixed at construction.
@@ -96,8 +108,23 @@ class CandidateMatcher {
   std::span<const Match> match(const Features& features, const CandidateSet& candidates);
 
  private:
+  void find_best_candidates(const Features& features, const CandidateSet& candidates, std::size_t num_features);
+  std::uint16_t rival_distance(const Descriptor& descriptor, const CandidateSet& candidates, std::int32_t landmark);
+  void index_landmarks(const CandidateSet& candidates);
+  [[nodiscard]] std::size_t slot_of(const CandidateSet& candidates, std::int32_t landmark) const;
+  std::int32_t best_feature_of(std::size_t slot, const Features& features, const CandidateSet& candidates);
+  void keep_mutual(const Features& features, const CandidateSet& candidates);
+  void keep_dominant_rotation(const Features& features, const CandidateSet& candidates);
+
   CandidateMatcherOptions options_;
   std::vector<Match> matches_;
+  std::vector<std::uint32_t> candidate_;   ///< of each match
+  std::vector<double> rotations_rad_;      ///< of each match, from mapped to seen orientation
+  std::vector<std::uint16_t> distances_;   ///< of one descriptor to all features or all candidates
+  // Hash table from landmark to its candidates: slot -> first candidate, candidate -> next of the same landmark.
+  std::vector<std::int32_t> first_in_slot_, next_candidate_;
+  std::vector<std::int32_t> best_feature_in_slot_;  ///< -2: not computed yet
+  std::size_t max_features_, max_candidates_;
 };
 
 }  // namespace camloc
