@@ -1,0 +1,219 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The robust loop: sample, solve, score, polish; always the same number of times.
+#include "core/geometry/pnp_ransac.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/geometry/p3p.h"
+#include "core/geometry/pose_jacobian.h"
+
+namespace camloc {
+namespace {
+
+constexpr int kMaxRedraws = 8;
+constexpr int kPolishSteps = 3;
+constexpr std::size_t kMaxPolishInliers = 256;  // more do not make a hypothesis better, only slower
+constexpr std::size_t kMinPolishInliers = 5;
+
+using Sample = std::array<std::size_t, 3>;
+
+/// PCG32 (O'Neill, "PCG: a family of simple fast space-efficient statistically good algorithms", 2014).
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ULL + 0xD1B54A32D192ED03ULL) { next(); }
+
+  std::uint32_t next() {
+    const std::uint64_t old = state_;
+    state_ = old * 6364136223846793005ULL + 1442695040888963407ULL;
+    const auto xorshifted = static_cast<std::uint32_t>(((old >> 18U) ^ old) >> 27U);
+    const auto turn = static_cast<std::uint32_t>(old >> 59U);
+    return (xorshifted >> turn) | (xorshifted << ((32U - turn) & 31U));
+  }
+  /// In [0, size), by multiplication: the bias is below size / 2^32.
+  std::size_t below(std::size_t size) { return static_cast<std::size_t>((std::uint64_t{next()} * size) >> 32U); }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// Three different indices below `size` >= 3.
+Sample draw(std::size_t size, Random* random) {
+  Sample sample;
+  sample[0] = random->below(size);
+  sample[1] = random->below(size - 1);
+  sample[2] = random->below(size - 2);
+  if (sample[1] >= sample[0]) ++sample[1];
+  const auto [low, high] = std::minmax(sample[0], sample[1]);
+  if (sample[2] >= low) ++sample[2];
+  if (sample[2] >= high) ++sample[2];
+  return sample;
+}
+
+/// n(k) of the header.
+class GrowthSchedule {
+ public:
+  GrowthSchedule(std::size_t num_pairs, int iterations)
+      : num_pairs_(num_pairs), iterations_(static_cast<std::uint64_t>(iterations)), size_(std::min<std::size_t>(4, num_pairs)) {}
+
+  std::size_t pool_size(int iteration) {
+    const std::uint64_t target = (static_cast<std::uint64_t>(iteration) + 1) * triples(num_pairs_);
+    while (size_ < num_pairs_ && triples(size_) * iterations_ < target) ++size_;
+    return size_;
+  }
+
+ private:
+  static std::uint64_t triples(std::uint64_t n) { return n * (n - 1) * (n - 2) / 6; }
+
+  std::size_t num_pairs_;
+  std::uint64_t iterations_;
+  std::size_t size_;
+};
+
+Eigen::Vector3d ray(const PoseScorer& pairs, std::size_t i) {
+  const Eigen::Vector2d p = pairs.image_point(i);
+  return {p.x(), p.y(), 1.0};
+}
+
+/// Distances between the three points measured in the camera and in the map agree.
+bool is_consistent_with_depth(const PoseScorer& pairs, const Sample& sample, double max_relative_depth_error) {
+  for (const std::size_t i : sample) {
+    if (pairs.depth_m(i) == 0.0) return true;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t i = sample[k], j = sample[(k + 1) % 3];
+    const double in_camera = (pairs.depth_m(i) * ray(pairs, i) - pairs.depth_m(j) * ray(pairs, j)).norm();
+    const double in_map = (pairs.landmark(i) - pairs.landmark(j)).norm();
+    if (std::abs(in_camera - in_map) > max_relative_depth_error * std::max(pairs.depth_m(i), pairs.depth_m(j))) return false;
+  }
+  return true;
+}
+
+ScoredPose scored_pose(const Eigen::Matrix3d& R_camera_map, const Eigen::Vector3d& t_camera_map) {
+  ScoredPose pose;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) pose.R[3 * row + column] = static_cast<float>(R_camera_map(row, column));
+    pose.t[row] = static_cast<float>(t_camera_map[row]);
+  }
+  return pose;
+}
+
+ScoredPose scored_pose(const Rigid3& T_map_camera) {
+  const Rigid3 T_camera_map = T_map_camera.inverse();
+  return scored_pose(T_camera_map.rotation.toRotationMatrix(), T_camera_map.translation);
+}
+
+/// Best pose so far, in the shifted frame of the scorer.
+struct Best {
+  Rigid3 T_map_camera;
+  float cost = std::numeric_limits<float>::infinity();
+};
+
+/// One Gauss-Newton step on the reprojection error of the inliers of `pose`. False when there are too few.
+bool gauss_newton_step(const PoseScorer& pairs, std::size_t max_inliers, Rigid3* T_map_camera) {
+  const Rigid3 T_camera_map = T_map_camera->inverse();
+  const Eigen::Matrix3d R = T_camera_map.rotation.toRotationMatrix();
+  const ScoredPose pose = scored_pose(R, T_camera_map.translation);
+  Matrix6d hessian = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
+  std::size_t num_inliers = 0;
+  for (std::size_t i = 0; i < pairs.size() && num_inliers < max_inliers; ++i) {
+    if (!pairs.pair_cost(pose, i).is_inlier) continue;
+    ++num_inliers;
+    const Eigen::Vector3d p = R * pairs.landmark(i) + T_camera_map.translation;
+    const double u = p.x() / p.z(), v = p.y() / p.z();
+    const PointJacobian J = point_jacobian(u, v, p.z());
+    const Eigen::Vector2d measured = pairs.image_point(i);
+    gradient.noalias() += (u - measured.x()) * J.u + (v - measured.y()) * J.v;
+    hessian.noalias() += J.u * J.u.transpose();
+    hessian.noalias() += J.v * J.v.transpose();
+  }
+  if (num_inliers < kMinPolishInliers) return false;
+  hessian.diagonal() *= 1.0 + 1e-6;  // keeps a flat direction from running away
+  const Vector6d change = -hessian.ldlt().solve(gradient);
+  if (!change.allFinite()) return false;
+  *T_map_camera = moved_in_camera_axes(*T_map_camera, change);
+  return true;
+}
+
+/// Local optimization: keeps the polished pose only where it scores better.
+void polish(const PoseScorer& pairs, std::size_t max_inliers, Best* best) {
+  Rigid3 T_map_camera = best->T_map_camera;
+  for (int step = 0; step < kPolishSteps; ++step) {
+    if (!gauss_newton_step(pairs, max_inliers, &T_map_camera)) return;
+  }
+  const float cost = pairs.cost(scored_pose(T_map_camera), best->cost);
+  if (cost < best->cost) *best = {T_map_camera, cost};
+}
+
+/// Solves one sample and takes over its best pose if that beats the best so far.
+bool try_sample(const PoseScorer& pairs, const Sample& sample, Best* best) {
+  std::array<Eigen::Vector3d, 3> bearings, points;
+  for (std::size_t k = 0; k < 3; ++k) {
+    bearings[k] = ray(pairs, sample[k]).normalized();
+    points[k] = pairs.landmark(sample[k]);
+  }
+  const P3pSolutions solutions = solve_p3p(bearings, points);
+  bool is_improved = false;
+  for (std::size_t s = 0; s < static_cast<std::size_t>(solutions.count); ++s) {
+    const float cost = pairs.cost(scored_pose(solutions.R_camera_map[s], solutions.t_camera_map[s]), best->cost);
+    if (!(cost < best->cost)) continue;
+    const Eigen::Quaterniond rotation(solutions.R_camera_map[s]);
+    *best = {Rigid3{rotation.normalized(), solutions.t_camera_map[s]}.inverse(), cost};
+    is_improved = true;
+  }
+  return is_improved;
+}
+
+}  // namespace
+
+PnpRansac::PnpRansac(const PnpRansacOptions& options)
+    : options_(options),
+      scorer_(static_cast<std::size_t>(std::max(options.max_pairs, 0))),
+      inlier_mask_(static_cast<std::size_t>(std::max(options.max_pairs, 0))) {}
+
+PnpRansacResult PnpRansac::estimate(const Correspondences& pairs, double focal_px, std::uint64_t seed) {
+  const std::size_t n = std::min(pairs.size(), static_cast<std::size_t>(std::max(options_.max_pairs, 0)));
+  inlier_mask_.assign(n, 0);
+  PnpRansacResult result;
+  if (n < 4) return result;
+  scorer_.set_pairs(pairs, n, focal_px, options_.max_error_px, options_.max_relative_depth_error);
+
+  Random random(seed);
+  GrowthSchedule schedule(n, options_.iterations);
+  Best best;
+  int num_polished = 0;
+  for (int iteration = 0; iteration < options_.iterations; ++iteration) {
+    const std::size_t pool_size = schedule.pool_size(iteration);
+    Sample sample = draw(pool_size, &random);
+    for (int redraw = 0; redraw < kMaxRedraws; ++redraw) {
+      if (is_consistent_with_depth(scorer_, sample, options_.max_relative_depth_error)) break;
+      sample = draw(pool_size, &random);
+    }
+    if (try_sample(scorer_, sample, &best) && num_polished < options_.local_optimizations) {
+      ++num_polished;
+      polish(scorer_, kMaxPolishInliers, &best);
+    }
+  }
+  if (!(best.cost < std::numeric_limits<float>::infinity())) return result;
+  polish(scorer_, n, &best);
+
+  const ScoredPose pose = scored_pose(best.T_map_camera);
+  for (std::size_t i = 0; i < n; ++i) {
+    const PoseScorer::PairCost pair = scorer_.pair_cost(pose, i);
+    inlier_mask_[i] = pair.is_inlier ? 1 : 0;
+    result.num_inliers += pair.is_inlier ? 1 : 0;
+    result.cost += static_cast<double>(pair.squared_error_px);
+  }
+  // Three pairs fit any pose P3P returns: one more is the least that says something.
+  result.is_found = result.num_inliers >= 4;
+  result.T_map_camera = {best.T_map_camera.rotation, best.T_map_camera.translation + scorer_.centre()};
+  return result;
+}
+
+}  // namespace camloc

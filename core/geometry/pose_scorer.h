@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Truncated reprojection cost of one pose over many pairs: the inner loop of the robust estimator. Plain floats in
+// structure of arrays, eight pairs at a time; every instruction set gives the same bits.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry/correspondences.h"
+#include "core/geometry/rigid3.h"
+
+namespace camloc {
+
+/// A pose as the kernel wants it: p_camera = R * p + t, row-major.
+struct ScoredPose {
+  float R[9];
+  float t[3];
+};
+
+/// Pairs with their landmarks relative to `centre`, so that floats keep sub-millimetre precision far from the origin.
+/// Allocates at construction only.
+class PoseScorer {
+ public:
+  explicit PoseScorer(std::size_t max_pairs);
+
+  /// Takes over the first `count` pairs. `max_relative_depth_error` 0 ignores measured depth.
+  void set_pairs(const Correspondences& pairs, std::size_t count, double focal_px, double max_error_px,
+                 double max_relative_depth_error);
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] const Eigen::Vector3d& centre() const { return centre_; }
+  /// Pair i: normalized image point, landmark relative to `centre`, measured depth (0 = none).
+  [[nodiscard]] Eigen::Vector2d image_point(std::size_t i) const { return {x_[i], y_[i]}; }
+  [[nodiscard]] Eigen::Vector3d landmark(std::size_t i) const { return {X_[i], Y_[i], Z_[i]}; }
+  [[nodiscard]] double depth_m(std::size_t i) const { return depth_[i]; }
+
+  /// Sum over all pairs of min(squared error, max_error^2), px^2, plus a constant that depends on the pairs alone; pairs
+  /// behind the camera and pairs that contradict their measured depth count max_error^2. Returns something >= `limit` as
+  /// soon as the sum reaches it: sums only grow, so the early exit never changes which pose wins.
+  [[nodiscard]] float cost(const ScoredPose& pose, float limit) const;
+  /// Squared error in px^2 where pair i is an inlier, max_error^2 where it is not; the arithmetic of `cost`.
+  struct PairCost {
+    bool is_inlier;
+    float squared_error_px;
+  };
+  [[nodiscard]] PairCost pair_cost(const ScoredPose& pose, std::size_t i) const;
+
+ private:
+  std::size_t size_ = 0;
+  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();
+  float squared_focal_ = 1, max_squared_error_ = 1;
+  std::vector<float> x_, y_, X_, Y_, Z_, depth_;
+  std::vector<float> min_z_, max_z_;  // where the landmark's predicted depth must lie; an empty interval is padding
+};
+
+}  // namespace camloc
