@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The sub-commands of `camloc-map`. Each function adds one to the command line; when it was chosen, its callback stores the
+// exit code: 0 done, 1 failed, 2 usage or configuration.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "core/base/result.h"
+
+namespace camloc::map_tool {
+
+void add_build_command(CLI::App& app, int& exit_code);
+
+/// Prints "camloc-map: <message>" on stderr and returns `exit_code`.
+int report_error(const Status& status, int exit_code);
+
+}  // namespace camloc::map_tool

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/camloc-map/posed_frames.h"
+
+#include <optional>
+#include <vector>
+
+#include "drivers/frame_selection.h"
+#include "drivers/sequence.h"
+
+namespace camloc::map_tool {
+namespace {
+
+Result<std::string> folder_of(const std::string& url) {
+  const std::string scheme = "replay://";
+  const std::size_t separator = url.find("://");
+  if (separator == std::string::npos) return url;
+  if (url.compare(0, scheme.size(), scheme) != 0) {
+    return {ErrorCode::kInvalid, "--sequence " + url + ": a map is made from a recording; give replay://DIR or a folder"};
+  }
+  const std::string rest = url.substr(scheme.size());
+  if (rest.find('?') != std::string::npos) {
+    return {ErrorCode::kInvalid, "--sequence " + url + ": takes no parameters; choose frames with --frames and --exclude"};
+  }
+  return rest;
+}
+
+Result<std::vector<std::optional<Rigid3>>> recorded_poses(const std::string& poses, const Sequence& sequence) {
+  if (poses == "embedded") return read_embedded_poses(sequence);
+  const auto trajectory = read_tum_trajectory(poses);
+  if (!trajectory.is_ok()) return trajectory.status();
+  std::vector<std::optional<Rigid3>> result;
+  for (const SequenceFrame& frame : sequence.frames) result.push_back(pose_at(trajectory.value(), frame.stamp_ns));
+  return result;
+}
+
+// "start:stop:step" runs of equal distance, as short as that gets.
+std::string slices_of(const std::map<std::uint64_t, Rigid3>& frames) {
+  std::string text;
+  for (auto it = frames.begin(); it != frames.end();) {
+    const std::uint64_t start = it->first;
+    std::uint64_t last = start, step = 1;
+    if (++it != frames.end()) {
+      step = it->first - start;
+      for (; it != frames.end() && it->first == last + step; ++it) last = it->first;
+    }
+    if (!text.empty()) text += ",";
+    text += std::to_string(start) + ":" + std::to_string(last + 1) + ":" + std::to_string(step);
+  }
+  return text;
+}
+
+}  // namespace
+
+Result<PosedFrames> find_posed_frames(const PosedFramesRequest& request, const RgbdCamera& camera) {
+  const auto folder = folder_of(request.sequence);
+  if (!folder.is_ok()) return folder.status();
+  const auto sequence = read_sequence(folder.value());
+  if (!sequence.is_ok()) return sequence.status();
+  const auto selected = select_frames(request.include, request.exclude, sequence.value().frames.size());
+  if (!selected.is_ok()) return selected.status();
+  const auto poses = recorded_poses(request.poses, sequence.value());
+  if (!poses.is_ok()) return poses.status();
+
+  const bool are_embedded = request.poses == "embedded";
+  const bool are_of_depth = request.pose_camera == PoseCamera::kDepth ||
+                            (request.pose_camera == PoseCamera::kAuto && are_embedded && camera.poses_are_of_depth_camera);
+  const Rigid3 T_recorded_color = are_of_depth ? camera.T_color_depth.inverse() : Rigid3{};
+  PosedFrames result;
+  result.folder = folder.value();
+  result.num_recorded = sequence.value().frames.size();
+  result.num_selected = selected.value().size();
+  for (const std::size_t index : selected.value()) {
+    if (const auto& T_map_recorded = poses.value()[index]) {
+      result.T_map_camera_of_frame.emplace(index, *T_map_recorded * T_recorded_color);
+    } else {
+      ++result.num_without_pose;
+    }
+  }
+  if (result.T_map_camera_of_frame.empty()) {
+    return {ErrorCode::kInvalid, request.sequence + ": none of the " + std::to_string(result.num_selected) + " selected frames has a pose in " +
+                                     (are_embedded ? std::string("the recording") : request.poses) + "; check --frames and the stamps of --poses"};
+  }
+  result.url = "replay://" + folder.value() + "?frames=" + slices_of(result.T_map_camera_of_frame);
+  return result;
+}
+
+}  // namespace camloc::map_tool
