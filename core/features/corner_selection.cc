@@ -1,0 +1,116 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/features/corner_selection.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+
+namespace camloc {
+namespace {
+
+bool is_stronger(const Corner& a, const Corner& b) {
+  if (a.score != b.score) return a.score > b.score;
+  return a.y != b.y ? a.y < b.y : a.x < b.x;
+}
+
+bool is_before(const Corner& a, const Corner& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; }
+
+/// Local maximum of the 3 x 3 scores around `p`; of equal neighbours the first in reading order.
+bool is_maximum(const std::uint8_t* p, std::ptrdiff_t stride) {
+  const std::uint8_t score = *p;
+  const std::uint8_t *above = p - stride, *below = p + stride;
+  return score > above[-1] && score > above[0] && score > above[1] && score > p[-1] &&  //
+         score >= p[1] && score >= below[-1] && score >= below[0] && score >= below[1];
+}
+
+}  // namespace
+
+CornerSelector::CornerSelector(int max_width, int max_height, int max_corners, const CornerOptions& options, FastKernel kernel)
+    : options_(options), fast_scores_(fast_scores_function(kernel)) {
+  assert(options.cell_px > 0 && options.border_px >= 4);
+  scores_.allocate(max_width, max_height);
+  const int columns = std::max(0, max_width - 2 * options.border_px + options.cell_px - 1) / options.cell_px;
+  const int rows = std::max(0, max_height - 2 * options.border_px + options.cell_px - 1) / options.cell_px;
+  const std::size_t num_cells = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  cells_.reserve(num_cells);
+  corner_of_cell_.resize(num_cells * kMaxPerCell);
+  selected_.reserve(static_cast<std::size_t>(max_corners) + num_cells);
+}
+
+std::span<const Corner> CornerSelector::select(const PaddedImage& level, int count) {
+  selected_.clear();
+  lay_out_cells(level);
+  if (cells_.empty() || count <= 0) return selected_;
+  for (const Cell& cell : cells_) score(level, cell, options_.threshold);
+  for (Cell& cell : cells_) collect(&cell);
+  if (options_.min_threshold < options_.threshold) {
+    // All empty cells are scored before any is searched, so that the result does not depend on their order.
+    for (const Cell& cell : cells_)
+      if (cell.count == 0) score(level, cell, options_.min_threshold);
+    for (Cell& cell : cells_)
+      if (cell.count == 0) collect(&cell);
+  }
+  take_evenly(count);
+  return selected_;
+}
+
+void CornerSelector::lay_out_cells(const PaddedImage& level) {
+  cells_.clear();
+  const int border = options_.border_px, side = options_.cell_px;
+  if (level.width <= 2 * border || level.height <= 2 * border) return;
+  Corner* corners = corner_of_cell_.data();
+  for (int y = border; y < level.height - border; y += side)
+    for (int x = border; x < level.width - border; x += side, corners += kMaxPerCell)
+      cells_.push_back({x, y, std::min(x + side, level.width - border), std::min(y + side, level.height - border), corners, 0});
+  // A frame of zero scores around the searched area.
+  const auto searched_width = static_cast<std::size_t>(level.width - 2 * border + 2);
+  std::memset(scores_.row(border - 1) + border - 1, 0, searched_width);
+  std::memset(scores_.row(level.height - border) + border - 1, 0, searched_width);
+  for (int y = border; y < level.height - border; ++y) scores_.row(y)[border - 1] = scores_.row(y)[level.width - border] = 0;
+}
+
+void CornerSelector::score(const PaddedImage& level, const Cell& cell, int threshold) {
+  for (int y = cell.y0; y < cell.y1; ++y)
+    fast_scores_(level.row(y) + cell.x0, level.stride, cell.x1 - cell.x0, threshold, scores_.row(y) + cell.x0);
+}
+
+void CornerSelector::collect(Cell* cell) {
+  for (int y = cell->y0; y < cell->y1; ++y) {
+    const std::uint8_t* row = scores_.row(y);
+    for (int x = cell->x0; x < cell->x1; ++x)
+      if (row[x] != 0 && is_maximum(row + x, scores_.stride))
+        add(cell, {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), row[x]});
+  }
+  std::sort(cell->corners, cell->corners + cell->count, is_stronger);
+}
+
+void CornerSelector::add(Cell* cell, Corner corner) {
+  if (cell->count < kMaxPerCell) {
+    cell->corners[cell->count++] = corner;
+    return;
+  }
+  ++num_clipped_;
+  Corner* weakest = std::max_element(cell->corners, cell->corners + kMaxPerCell, is_stronger);
+  if (is_stronger(corner, *weakest)) *weakest = corner;
+}
+
+void CornerSelector::take_evenly(int count) {
+  // Rank by rank: as long as all corners of a rank fit, take them; of the last rank the strongest.
+  for (int rank = 0; rank < kMaxPerCell; ++rank) {
+    const std::size_t begin = selected_.size();
+    for (const Cell& cell : cells_)
+      if (cell.count > rank) selected_.push_back(cell.corners[rank]);
+    if (selected_.size() == begin) break;
+    if (selected_.size() >= static_cast<std::size_t>(count)) {
+      const auto first = selected_.begin() + static_cast<std::ptrdiff_t>(begin);
+      std::nth_element(first, selected_.begin() + count - (selected_.size() == static_cast<std::size_t>(count) ? 1 : 0),
+                       selected_.end(), is_stronger);
+      selected_.resize(static_cast<std::size_t>(count));
+      break;
+    }
+  }
+  std::sort(selected_.begin(), selected_.end(), is_before);
+}
+
+}  // namespace camloc

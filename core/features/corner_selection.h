@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Corners of one pyramid level, spread evenly: every grid cell gives its strongest first, then its second strongest, until
+// the level's share of features is used up.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/features/fast_corners.h"
+#include "core/features/image_pyramid.h"
+
+namespace camloc {
+
+struct Corner {
+  std::int16_t x = 0, y = 0;  ///< pixels of the level
+  std::uint8_t score = 0;     ///< FAST score
+};
+
+struct CornerOptions {
+  int threshold = 20;
+  int min_threshold = 7;   ///< for cells without a corner at `threshold`
+  int cell_px = 32;
+  int border_px = 19;      ///< no corners closer to the border of the level
+};
+
+/// Allocates at construction only. Not thread-safe.
+class CornerSelector {
+ public:
+  /// Levels given to select() are at most this large, and at most `max_corners` are asked for.
+  CornerSelector(int max_width, int max_height, int max_corners, const CornerOptions& options,
+                 FastKernel kernel = best_fast_kernel());
+  /// At most `count` corners, ordered by row, then column; valid until the next call.
+  std::span<const Corner> select(const PaddedImage& level, int count);
+  /// Corners dropped because their cell already held kMaxPerCell stronger ones, since construction.
+  [[nodiscard]] std::uint64_t num_clipped() const { return num_clipped_; }
+
+  static constexpr int kMaxPerCell = 64;
+
+ private:
+  struct Cell {
+    int x0, y0, x1, y1;   ///< pixels [x0, x1) x [y0, y1)
+    Corner* corners;
+    int count;
+  };
+  void lay_out_cells(const PaddedImage& level);
+  void score(const PaddedImage& level, const Cell& cell, int threshold);
+  void collect(Cell* cell);
+  void add(Cell* cell, Corner corner);
+  void take_evenly(int count);
+
+  CornerOptions options_;
+  FastScoresFunction fast_scores_;
+  PaddedImage scores_;
+  std::vector<Cell> cells_;
+  std::vector<Corner> corner_of_cell_;
+  std::vector<Corner> selected_;
+  std::uint64_t num_clipped_ = 0;
+};
+
+}  // namespace camloc

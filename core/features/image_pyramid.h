@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Scale pyramid of a grey image. Sizes and pixels equal those inside cv::ORB: each level is made from the one before it
+// by OpenCV's INTER_LINEAR_EXACT (8-bit fixed-point weights, one rounding at the end).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/frame.h"
+
+namespace camloc {
+
+/// A grey image with room after each row: kernels may read and write kPadding pixels past the end of a row.
+struct PaddedImage {
+  static constexpr int kPadding = 64;
+
+  std::vector<std::uint8_t> pixels;
+  int width = 0, height = 0, stride = 0;
+
+  void allocate(int new_width, int new_height);
+  [[nodiscard]] std::uint8_t* row(int y) { return pixels.data() + static_cast<std::ptrdiff_t>(y) * stride; }
+  [[nodiscard]] const std::uint8_t* row(int y) const { return pixels.data() + static_cast<std::ptrdiff_t>(y) * stride; }
+  [[nodiscard]] ImageView<std::uint8_t> view() const { return {pixels.data(), width, height, stride}; }
+};
+
+/// Where a destination pixel comes from along one axis: (src[offset] * (256 - weight) + src[offset + 1] * weight) / 256.
+struct ResizeTap {
+  std::int32_t offset = 0;
+  std::uint16_t weight = 0;  ///< of the second pixel, 0..256; 0 where there is no second pixel
+};
+
+/// Linear resize with the arithmetic of cv::INTER_LINEAR_EXACT for one pair of sizes. Allocates at construction only.
+class ExactResize {
+ public:
+  ExactResize(int src_width, int src_height, int dst_width, int dst_height);
+  /// `src` and `dst` have the sizes given at construction.
+  void apply(const PaddedImage& src, PaddedImage* dst);
+
+ private:
+  void resize_row(const std::uint8_t* src, std::uint16_t* dst) const;
+
+  std::vector<ResizeTap> columns_, rows_;
+  std::vector<std::uint16_t> row_buffer_[2];  ///< horizontally resized source rows, 8 fractional bits
+};
+
+/// Allocates at construction only. Not thread-safe.
+class ImagePyramid {
+ public:
+  ImagePyramid(int width, int height, int num_levels, float scale_factor);
+  /// `image` has the size given at construction.
+  void build(ImageView<std::uint8_t> image);
+
+  [[nodiscard]] int num_levels() const { return static_cast<int>(levels_.size()); }
+  [[nodiscard]] const PaddedImage& level(int level) const { return levels_[static_cast<std::size_t>(level)]; }
+  /// scale_factor ^ level
+  [[nodiscard]] float scale(int level) const { return scales_[static_cast<std::size_t>(level)]; }
+
+ private:
+  std::vector<PaddedImage> levels_;
+  std::vector<float> scales_;
+  std::vector<ExactResize> resizes_;  ///< resizes_[i] makes level i + 1 from level i
+};
+
+}  // namespace camloc
