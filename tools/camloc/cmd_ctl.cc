@@ -58,7 +58,9 @@ void add_ctl_command(CLI::App& app, int& exit_code) {
   ctl->require_subcommand(1);
   ctl->fallthrough();
   ctl->add_option("--socket", options->socket_path, "control socket of camlocd")->capture_default_str();
-  ctl->add_option("--timeout-ms", options->timeout_ms, "wait this long for the answer")->check(CLI::Range(1, 600000))->capture_default_str();
+  ctl->add_option("--timeout-ms", options->timeout_ms, "wait this long for the answer")
+      ->check(CLI::Range(1, 600000))
+      ->capture_default_str();
   ctl->add_flag("--json", options->is_json, "print the answer as it came");
   const auto add = [&](const char* name, const char* help) {
     ctl->add_subcommand(name, help)->callback([options, name, &exit_code] {

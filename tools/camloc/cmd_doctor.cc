@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // `camloc doctor`: what of an installation works, and what to do about the rest. Changes nothing.
+#include <toml++/toml.h>
+
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
@@ -12,8 +14,6 @@
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <toml++/toml.h>
 
 #include "core/features/hamming.h"
 #include "core/map/map_view.h"
@@ -63,7 +63,7 @@ void read_settings(const std::string& config_text, Settings* settings) {
     read_setting(config, "map.path", &settings->map_path);
     read_setting(config, "source.url", &settings->source_url);
     read_setting(config, "source.camera", &settings->camera_path);
-    read_setting(config, "lcm.url", &settings->lcm_url);
+    read_setting(config, "publish.lcm_url", &settings->lcm_url);
     read_setting(config, "control.socket", &settings->socket_path);
   } catch (const toml::parse_error&) {
     // The configuration check has said so already, or camlocd printed something that is not for us: defaults remain.
@@ -81,7 +81,8 @@ Check check_config(const std::string& path, Settings* settings) {
   if (!camlocd) return {"config", Level::kWarning, "not checked: " + camlocd.status().message(), "install the package camloc"};
   const auto checked = run_program(*camlocd, {"--config", path, "--check-config"}, std::chrono::seconds(10));
   if (!checked) return {"config", Level::kFailure, checked.status().message(), "run 'camlocd --check-config' yourself"};
-  if (checked->exit_code != 0) return {"config", Level::kFailure, first_line(checked->err + checked->out), "correct that line of the file"};
+  if (checked->exit_code != 0)
+    return {"config", Level::kFailure, first_line(checked->err + checked->out), "correct that line of the file"};
   const auto printed = run_program(*camlocd, {"--config", path, "--print-config"}, std::chrono::seconds(10));
   if (printed && printed->exit_code == 0) read_settings(printed->out, settings);
   return {"config", Level::kOk, path, ""};
@@ -89,20 +90,24 @@ Check check_config(const std::string& path, Settings* settings) {
 
 Check check_map(const std::string& path) {
   if (path.empty()) {
-    return {"map", Level::kFailure, "none configured", "build one with 'camloc map build', then set map.path in the configuration"};
+    return {"map", Level::kFailure, "none configured",
+            "build one with 'camloc map build', then set map.path in the configuration"};
   }
   const auto map = MapView::open(path);
   if (!map) return {"map", Level::kFailure, map.status().message(), "build it with 'camloc map build' or copy it again"};
   const MapInfo& info = map->info();
-  return {"map", Level::kOk, path + ": " + std::to_string(info.num_landmarks) + " landmarks, " + std::to_string(info.num_keyframes) + " keyframes, " +
-                                 std::to_string(info.file_bytes / 1000) + " kB", ""};
+  return {"map", Level::kOk,
+          path + ": " + std::to_string(info.num_landmarks) + " landmarks, " + std::to_string(info.num_keyframes) +
+              " keyframes, " + std::to_string(info.file_bytes / 1000) + " kB",
+          ""};
 }
 
 Check check_camera_file(const std::string& path) {
-  if (path.empty()) return {"calibration", Level::kOk, "none configured: the calibration stored in the map is used", ""};
+  if (path.empty()) return {"calibration", Level::kOk, "none configured: the source knows its own", ""};
   const auto camera = read_camera_file(path);
   if (!camera) return {"calibration", Level::kFailure, camera.status().message(), "correct that file or set another one"};
-  return {"calibration", Level::kOk, path + ": " + std::to_string(camera->color.width) + "x" + std::to_string(camera->color.height), ""};
+  return {"calibration", Level::kOk,
+          path + ": " + std::to_string(camera->color.width) + "x" + std::to_string(camera->color.height), ""};
 }
 
 std::string known_schemes() {
@@ -117,15 +122,19 @@ Check check_source(const std::string& url, const std::optional<nlohmann::json>& 
   if (daemon) {
     const bool has_camera = daemon->value("state", std::string()) != "NO_CAMERA";
     if (has_camera) return {"camera", Level::kOk, url + ": in use by camlocd", ""};
-    return {"camera", Level::kFailure, url + ": camlocd gets no frames", "check cable and power; 'journalctl -u camlocd' has the reason"};
+    return {"camera", Level::kFailure, url + ": camlocd gets no frames",
+            "check cable and power; 'journalctl -u camlocd' has the reason"};
   }
   auto source = open_frame_source(url);
   if (!source) return {"camera", Level::kFailure, source.status().message(), "this build knows " + known_schemes()};
   FrameBuffer frame;
   const Status status = (*source)->next(&frame, std::chrono::seconds(3));
-  if (!status) return {"camera", Level::kFailure, url + ": " + status.message(), "check cable, power and permission of the device"};
-  return {"camera", Level::kOk, url + ": " + std::to_string(frame.gray.width) + "x" + std::to_string(frame.gray.height) + " image, " +
-                                    std::to_string(frame.depth.width) + "x" + std::to_string(frame.depth.height) + " depth", ""};
+  if (!status)
+    return {"camera", Level::kFailure, url + ": " + status.message(), "check cable, power and permission of the device"};
+  return {"camera", Level::kOk,
+          url + ": " + std::to_string(frame.gray.width) + "x" + std::to_string(frame.gray.height) + " image, " +
+              std::to_string(frame.depth.width) + "x" + std::to_string(frame.depth.height) + " depth",
+          ""};
 }
 
 Check check_daemon(const std::string& socket_path, std::optional<nlohmann::json>* daemon) {
@@ -135,7 +144,8 @@ Check check_daemon(const std::string& socket_path, std::optional<nlohmann::json>
     return {"daemon", Level::kOk, socket_path + ": " + answer->value("state", std::string("answers")), ""};
   }
   const bool is_absent = answer.status().code() == ErrorCode::kUnavailable;
-  return {"daemon", is_absent ? Level::kWarning : Level::kFailure, answer.status().message(), is_absent ? "" : "'journalctl -u camlocd' has the reason"};
+  return {"daemon", is_absent ? Level::kWarning : Level::kFailure, answer.status().message(),
+          is_absent ? "" : "'journalctl -u camlocd' has the reason"};
 }
 
 Check check_lcm(const std::string& url) {
@@ -145,14 +155,17 @@ Check check_lcm(const std::string& url) {
   const bool is_local = route->local_address.rfind("127.", 0) == 0;
   const std::string detail = url + ": leaves by " + route->local_address;
   if (!is_local && route->ttl == 0) return {"lcm", Level::kOk, detail + ", ttl=0 keeps it on this machine", ""};
-  if (!is_local) return {"lcm", Level::kWarning, detail + " with ttl=" + std::to_string(route->ttl), "poses leave this machine; set ttl=0 unless you want that"};
+  if (!is_local)
+    return {"lcm", Level::kWarning, detail + " with ttl=" + std::to_string(route->ttl),
+            "poses leave this machine; set ttl=0 unless you want that"};
   return {"lcm", Level::kOk, detail, ""};
 }
 
 Check check_cpu() {
   const HammingKernel kernel = best_hamming_kernel();
   const std::string detail = std::string("descriptor matching with ") + camloc::to_string(kernel);
-  if (kernel == HammingKernel::kScalar) return {"cpu", Level::kWarning, detail, "expect a lower frame rate; in a virtual machine pass the host's CPU through"};
+  if (kernel == HammingKernel::kScalar)
+    return {"cpu", Level::kWarning, detail, "expect a lower frame rate; in a virtual machine pass the host's CPU through"};
   return {"cpu", Level::kOk, detail, ""};
 }
 

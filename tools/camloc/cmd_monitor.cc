@@ -26,13 +26,13 @@ struct MonitorOptions {
   std::string status_channel = "CAMLOC_STATUS";
   bool is_json = false;
   bool is_plain = false;
-  long long count = 0;      // poses, 0 = no end
-  double timeout_s = 0;     // 0 = wait for ever
+  long long count = 0;   // poses, 0 = no end
+  double timeout_s = 0;  // 0 = wait for ever
 };
 
 constexpr const char* kHints =
     "  is the daemon running?            camloc ctl status\n"
-    "  does it publish on this URL?      [lcm] url in /etc/camloc/camlocd.toml, --lcm-url here\n"
+    "  does it publish on this URL?      [publish] lcm_url in camlocd.toml, --lcm-url here\n"
     "  is there a multicast route?       camloc doctor\n"
     "  other machine or namespace?       the default URL has ttl=0 and stays on this machine\n";
 
@@ -42,7 +42,9 @@ double seconds_between(Clock::time_point from, Clock::time_point to) { return st
 class Monitor {
  public:
   explicit Monitor(const MonitorOptions& options)
-      : options_(options), is_screen_(!options.is_json && !options.is_plain && ::isatty(STDOUT_FILENO) == 1), start_(Clock::now()) {}
+      : options_(options),
+        is_screen_(!options.is_json && !options.is_plain && ::isatty(STDOUT_FILENO) == 1),
+        start_(Clock::now()) {}
 
   void on_pose(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
     pose_t pose;
@@ -63,7 +65,8 @@ class Monitor {
   void on_status(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
     status_t status;
     if (status.decode(buffer->data, 0, static_cast<int>(buffer->data_size)) < 0) return refuse(channel);
-    const bool is_news = !state_.status || state_.status->state_text != status.state_text || state_.status->map_id != status.map_id ||
+    const bool is_news = !state_.status || state_.status->state_text != status.state_text ||
+                         state_.status->map_id != status.map_id ||
                          state_.status->is_calibration_suspect != status.is_calibration_suspect;
     if (options_.is_json) {
       std::printf("%s\n", dump(status_json(status)).c_str());
@@ -78,7 +81,9 @@ class Monitor {
     const auto now = Clock::now();
     if (!is_screen_ || seconds_between(last_draw_, now) < 0.1) return;
     last_draw_ = now;
-    state_.rate_hz = arrivals_.size() < 2 ? 0 : static_cast<double>(arrivals_.size() - 1) / seconds_between(arrivals_.front(), arrivals_.back());
+    state_.rate_hz = arrivals_.size() < 2
+                         ? 0
+                         : static_cast<double>(arrivals_.size() - 1) / seconds_between(arrivals_.front(), arrivals_.back());
     state_.seconds_since_pose = silence_s();
     std::printf("\x1b[H\x1b[J%s", monitor_screen(state_).c_str());
   }
@@ -89,12 +94,15 @@ class Monitor {
 
  private:
   /// Text from a message may be no UTF-8.
-  static std::string dump(const nlohmann::json& record) { return record.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); }
+  static std::string dump(const nlohmann::json& record) {
+    return record.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  }
 
   void refuse(const std::string& channel) {
     if (has_refused_) return;
     has_refused_ = true;
-    std::fprintf(stderr, "camloc: messages on %s are of another type or version than this program reads; skipping them\n", channel.c_str());
+    std::fprintf(stderr, "camloc: messages on %s are of another type or version than this program reads; skipping them\n",
+                 channel.c_str());
   }
 
   const MonitorOptions& options_;
@@ -121,12 +129,14 @@ int run(const MonitorOptions& options) {
     monitor.refresh();
     std::fflush(stdout);
     if (options.timeout_s > 0 && monitor.silence_s() > options.timeout_s) {
-      std::fprintf(stderr, "camloc: no pose on %s for %g s (%s)\n%s", options.pose_channel.c_str(), options.timeout_s, options.lcm_url.c_str(), kHints);
+      std::fprintf(stderr, "camloc: no pose on %s for %g s (%s)\n%s", options.pose_channel.c_str(), options.timeout_s,
+                   options.lcm_url.c_str(), kHints);
       return 1;
     }
     if (!has_hinted && options.timeout_s <= 0 && !monitor.has_heard() && monitor.silence_s() > 3) {
       has_hinted = true;
-      std::fprintf(stderr, "camloc: nothing on %s yet, still waiting (%s)\n%s", options.pose_channel.c_str(), options.lcm_url.c_str(), kHints);
+      std::fprintf(stderr, "camloc: nothing on %s yet, still waiting (%s)\n%s", options.pose_channel.c_str(),
+                   options.lcm_url.c_str(), kHints);
     }
   }
   std::fflush(stdout);
@@ -143,7 +153,8 @@ void add_monitor_command(CLI::App& app, int& exit_code) {
   command->add_option("--channel", options->pose_channel, "channel of the poses")->capture_default_str();
   command->add_option("--status-channel", options->status_channel, "channel of the status")->capture_default_str();
   command->add_option("--count", options->count, "end after so many poses")->check(CLI::NonNegativeNumber);
-  command->add_option("--timeout", options->timeout_s, "fail when no pose arrives for so many seconds (default: wait)")->check(CLI::NonNegativeNumber);
+  command->add_option("--timeout", options->timeout_s, "fail when no pose arrives for so many seconds (default: wait)")
+      ->check(CLI::NonNegativeNumber);
   command->add_flag("--json", options->is_json, "one JSON object a line");
   command->add_flag("--plain", options->is_plain, "lines instead of the live view, also on a terminal");
   command->callback([options, &exit_code] { exit_code = run(*options); });

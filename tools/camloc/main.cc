@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // `camloc COMMAND`: the commands built in below, or the program camloc-COMMAND.
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <string>
@@ -62,7 +63,8 @@ int run_external(const CLI::App& app, const std::vector<std::string>& arguments)
   } else if (const std::string closest = camloc::tools::closest_word(arguments[0], known); !closest.empty()) {
     hint = "did you mean '" + closest + "'?";
   }
-  std::fprintf(stderr, "camloc: no command '%s' and no program camloc-%s; %s\n", arguments[0].c_str(), arguments[0].c_str(), hint.c_str());
+  std::fprintf(stderr, "camloc: no command '%s' and no program camloc-%s; %s\n", arguments[0].c_str(), arguments[0].c_str(),
+               hint.c_str());
   return 2;
 }
 

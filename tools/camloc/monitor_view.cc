@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdarg>
@@ -41,6 +42,9 @@ double largest_sigma(const Eigen::Matrix3d& covariance) {
   return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
 }
 
+/// As camlocd's control socket writes it: JSON numbers lose the low bits of 64-bit integers.
+std::string map_id_text(std::int64_t map_id) { return print("%016llx", static_cast<unsigned long long>(map_id)); }
+
 std::string age_text(const pose_t& pose) { return pose.age_us < 0 ? "unknown" : print("%.1f ms", pose.age_us / 1e3); }
 
 std::vector<std::string> warnings(const MonitorState& state) {
@@ -49,13 +53,15 @@ std::vector<std::string> warnings(const MonitorState& state) {
   if (!state.status) return texts;
   const status_t& status = *state.status;
   if (status.is_calibration_suspect != 0) {
-    texts.push_back(print("calibration suspect: the images fit the map with %.3f times the focal length of the camera file", status.focal_scale));
+    texts.push_back(print("calibration suspect: the images fit the map with %.3f times the focal length of the camera file",
+                          status.focal_scale));
   }
   if (status.frames_corrupt > 0) texts.push_back(print("%lld corrupt frames", static_cast<long long>(status.frames_corrupt)));
   if (status.map_reload_failures > 0) {
     texts.push_back(print("%lld map reloads refused, the old map is kept", static_cast<long long>(status.map_reload_failures)));
   }
-  if (status.source_restarts > 0) texts.push_back(print("camera restarted %lld times", static_cast<long long>(status.source_restarts)));
+  if (status.source_restarts > 0)
+    texts.push_back(print("camera restarted %lld times", static_cast<long long>(status.source_restarts)));
   return texts;
 }
 
@@ -63,7 +69,8 @@ std::vector<std::string> warnings(const MonitorState& state) {
 
 std::string state_name(int state) {
   static constexpr std::array kNames{"NO_CAMERA", "NO_MAP", "LOST", "COARSE", "LOCALIZED", "COASTING"};
-  return state >= 0 && state < static_cast<int>(kNames.size()) ? kNames[static_cast<std::size_t>(state)] : "state " + std::to_string(state);
+  return state >= 0 && state < static_cast<int>(kNames.size()) ? kNames[static_cast<std::size_t>(state)]
+                                                               : "state " + std::to_string(state);
 }
 
 PoseSigma pose_sigma(const pose_t& pose) {
@@ -73,12 +80,13 @@ PoseSigma pose_sigma(const pose_t& pose) {
 }
 
 std::string pose_line(const pose_t& pose) {
-  std::string line = print("%lld.%06lld %-9s", static_cast<long long>(pose.utime / 1000000), static_cast<long long>(pose.utime % 1000000),
-                           state_name(pose.state).c_str());
+  std::string line = print("%lld.%06lld %-9s", static_cast<long long>(pose.utime / 1000000),
+                           static_cast<long long>(pose.utime % 1000000), state_name(pose.state).c_str());
   if (has_pose(pose)) {
     const PoseSigma sigma = pose_sigma(pose);
-    line += print("  %s [%+.3f %+.3f %+.3f] m  sigma %.1f cm %.2f deg  quality %d", printable(pose.parent_frame).c_str(), pose.pos[0], pose.pos[1],
-                  pose.pos[2], 100 * sigma.position_m, kDegreesPerRadian * sigma.rotation_rad, static_cast<int>(pose.quality));
+    line += print("  %s [%+.3f %+.3f %+.3f] m  sigma %.1f cm %.2f deg  quality %d", printable(pose.parent_frame).c_str(),
+                  pose.pos[0], pose.pos[1], pose.pos[2], 100 * sigma.position_m, kDegreesPerRadian * sigma.rotation_rad,
+                  static_cast<int>(pose.quality));
   }
   if (pose.state != pose_t::LOCALIZED) line += "  " + printable(pose.reason_text);
   line += print("  inliers %d/%d", pose.num_inliers, pose.num_matches);
@@ -101,7 +109,7 @@ nlohmann::json pose_json(const pose_t& pose) {
   nlohmann::json record{{"type", "pose"},
                         {"utime", pose.utime},
                         {"sequence", pose.sequence},
-                        {"map_id", pose.map_id},
+                        {"map_id", map_id_text(pose.map_id)},
                         {"parent_frame", pose.parent_frame},
                         {"child_frame", pose.child_frame},
                         {"pos", std::vector<double>(std::begin(pose.pos), std::end(pose.pos))},
@@ -130,7 +138,7 @@ nlohmann::json status_json(const status_t& status) {
           {"state_text", status.state_text},
           {"source", status.source},
           {"map_path", status.map_path},
-          {"map_id", status.map_id},
+          {"map_id", map_id_text(status.map_id)},
           {"uptime_us", status.uptime_us},
           {"frames_received", status.frames_received},
           {"frames_dropped", status.frames_dropped},
@@ -153,31 +161,34 @@ std::string monitor_screen(const MonitorState& state) {
   std::string screen;
   if (state.pose) {
     const pose_t& pose = *state.pose;
-    screen += "state     " + state_name(pose.state) + (pose.reason_text.empty() ? "" : "  (" + printable(pose.reason_text) + ")") + "\n";
+    screen += "state     " + state_name(pose.state) +
+              (pose.reason_text.empty() ? "" : "  (" + printable(pose.reason_text) + ")") + "\n";
     if (has_pose(pose)) {
       const PoseSigma sigma = pose_sigma(pose);
       screen += print("position  %+9.3f %+9.3f %+9.3f m in %s, sigma %.1f cm\n", pose.pos[0], pose.pos[1], pose.pos[2],
                       printable(pose.parent_frame).c_str(), 100 * sigma.position_m);
-      screen += print("rotation  %+9.4f %+9.4f %+9.4f %+9.4f (w x y z), sigma %.2f deg\n", pose.orientation[0], pose.orientation[1],
-                      pose.orientation[2], pose.orientation[3], kDegreesPerRadian * sigma.rotation_rad);
+      screen += print("rotation  %+9.4f %+9.4f %+9.4f %+9.4f (w x y z), sigma %.2f deg\n", pose.orientation[0],
+                      pose.orientation[1], pose.orientation[2], pose.orientation[3], kDegreesPerRadian * sigma.rotation_rad);
     } else {
       screen += "position  none\nrotation  none\n";
     }
-    screen += print("quality   %d, %d inliers of %d matches of %d features\n", static_cast<int>(pose.quality), pose.num_inliers, pose.num_matches,
-                    pose.num_features);
-    screen += print("latency   %.1f ms in the localizer, capture to publishing %s\n", pose.latency_us[5] / 1e3, age_text(pose).c_str());
+    screen += print("quality   %d, %d inliers of %d matches of %d features\n", static_cast<int>(pose.quality), pose.num_inliers,
+                    pose.num_matches, pose.num_features);
+    screen +=
+        print("latency   %.1f ms in the localizer, capture to publishing %s\n", pose.latency_us[5] / 1e3, age_text(pose).c_str());
     screen += print("poses     %lld, %.1f %% localized, %.1f Hz, %d resets\n", state.num_poses,
-                    100.0 * static_cast<double>(state.num_localized) / static_cast<double>(std::max(1LL, state.num_poses)), state.rate_hz,
-                    pose.reset_counter);
+                    100.0 * static_cast<double>(state.num_localized) / static_cast<double>(std::max(1LL, state.num_poses)),
+                    state.rate_hz, pose.reset_counter);
   } else {
     screen += "state     waiting for the first pose\n";
   }
   if (state.status) {
     screen += "source    " + printable(state.status->source) + "\n";
     screen += "map       " + printable(state.status->map_path) + "\n";
-    screen += print("daemon    up %.0f s, %.1f Hz, %lld of %lld frames dropped, %.1f MB\n", static_cast<double>(state.status->uptime_us) / 1e6,
-                    state.status->frame_rate_hz, static_cast<long long>(state.status->frames_dropped),
-                    static_cast<long long>(state.status->frames_received), static_cast<double>(state.status->rss_bytes) / 1e6);
+    screen += print("daemon    up %.0f s, %.1f Hz, %lld of %lld frames dropped, %.1f MB\n",
+                    static_cast<double>(state.status->uptime_us) / 1e6, state.status->frame_rate_hz,
+                    static_cast<long long>(state.status->frames_dropped), static_cast<long long>(state.status->frames_received),
+                    static_cast<double>(state.status->rss_bytes) / 1e6);
   }
   for (const auto& warning : warnings(state)) screen += "WARNING   " + warning + "\n";
   return screen;

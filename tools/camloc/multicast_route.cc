@@ -5,12 +5,13 @@
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+
+#include "core/base/unique_fd.h"
 
 namespace camloc::tools {
 namespace {
@@ -51,21 +52,21 @@ Result<MulticastRoute> find_multicast_route(const std::string& lcm_url) {
   if (lcm_url.rfind("udpm://", 0) != 0 || !parse_udpm(lcm_url, &group, &route)) {
     return {ErrorCode::kInvalid, "'" + lcm_url + "' is not an LCM URL; an example is " + kDefaultLcmUrl};
   }
-  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (fd < 0) return {ErrorCode::kIo, std::string("cannot make a UDP socket: ") + std::strerror(errno)};
+  const UniqueFd fd(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (!fd.is_open()) return {ErrorCode::kIo, std::string("cannot make a UDP socket: ") + std::strerror(errno)};
   // Connecting a datagram socket sends nothing: the kernel only looks up the route.
-  const bool is_routed = ::connect(fd, reinterpret_cast<const sockaddr*>(&group), sizeof(group)) == 0;
+  const bool is_routed = ::connect(fd.get(), reinterpret_cast<const sockaddr*>(&group), sizeof(group)) == 0;
   const int route_error = errno;
   sockaddr_in local{};
   socklen_t length = sizeof(local);
-  if (is_routed && ::getsockname(fd, reinterpret_cast<sockaddr*>(&local), &length) == 0) {
+  if (is_routed && ::getsockname(fd.get(), reinterpret_cast<sockaddr*>(&local), &length) == 0) {
     std::array<char, INET_ADDRSTRLEN> text{};
     route.local_address = ::inet_ntop(AF_INET, &local.sin_addr, text.data(), text.size()) != nullptr ? text.data() : "";
   }
-  ::close(fd);
   if (!is_routed) {
-    return {ErrorCode::kUnavailable, "no multicast route to " + route.group + " (" + std::strerror(route_error) +
-                                         "); add one with 'ip link set lo up; ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo'"};
+    return {ErrorCode::kUnavailable,
+            "no multicast route to " + route.group + " (" + std::strerror(route_error) +
+                "); add one with 'ip link set lo up; ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo'"};
   }
   return route;
 }

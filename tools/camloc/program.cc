@@ -17,6 +17,8 @@
 #include <numeric>
 #include <sstream>
 
+#include "core/base/unique_fd.h"
+
 namespace camloc::tools {
 namespace {
 
@@ -36,41 +38,40 @@ bool is_executable_file(const fs::path& path) {
 
 Status system_error(const std::string& what) { return {ErrorCode::kIo, what + ": " + std::strerror(errno)}; }
 
-/// Both ends of a pipe, closed on exec.
+/// Both ends of a pipe, closed on exec; not open when the system refused.
 struct Pipe {
-  std::array<int, 2> ends{-1, -1};
-  Pipe() { if (::pipe2(ends.data(), O_CLOEXEC) != 0) ends = {-1, -1}; }
-  ~Pipe() { close_end(0); close_end(1); }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-  void close_end(std::size_t end) {
-    if (ends[end] >= 0) ::close(ends[end]);
-    ends[end] = -1;
+  UniqueFd read_end, write_end;
+
+  Pipe() {
+    std::array<int, 2> ends{};
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0) return;
+    read_end.reset(ends[0]);
+    write_end.reset(ends[1]);
   }
 };
 
 [[noreturn]] void become(const std::string& path, const std::vector<char*>& pointers, const Pipe& out, const Pipe& err) {
   const int null = ::open("/dev/null", O_RDONLY);
   ::dup2(null, STDIN_FILENO);
-  ::dup2(out.ends[1], STDOUT_FILENO);
-  ::dup2(err.ends[1], STDERR_FILENO);
+  ::dup2(out.write_end.get(), STDOUT_FILENO);
+  ::dup2(err.write_end.get(), STDERR_FILENO);
   ::execv(path.c_str(), pointers.data());
   ::_exit(127);
 }
 
 /// Reads both pipes until they are closed. False when the time is up.
 bool drain(Pipe* out, Pipe* err, ProgramOutput* output, std::chrono::steady_clock::time_point deadline) {
-  while (out->ends[0] >= 0 || err->ends[0] >= 0) {
+  while (out->read_end.is_open() || err->read_end.is_open()) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
     if (left <= 0) return false;
-    std::array<pollfd, 2> fds{pollfd{out->ends[0], POLLIN, 0}, pollfd{err->ends[0], POLLIN, 0}};
+    std::array<pollfd, 2> fds{pollfd{out->read_end.get(), POLLIN, 0}, pollfd{err->read_end.get(), POLLIN, 0}};
     if (::poll(fds.data(), fds.size(), static_cast<int>(left)) < 0 && errno != EINTR) return false;
     for (std::size_t i = 0; i < fds.size(); ++i) {
       if (fds[i].fd < 0 || fds[i].revents == 0) continue;
       std::array<char, 4096> bytes{};
       const ssize_t count = ::read(fds[i].fd, bytes.data(), bytes.size());
       if (count > 0) (i == 0 ? output->out : output->err).append(bytes.data(), static_cast<std::size_t>(count));
-      if (count == 0 || (count < 0 && errno != EINTR)) (i == 0 ? out : err)->close_end(0);
+      if (count == 0 || (count < 0 && errno != EINTR)) (i == 0 ? out : err)->read_end.reset();
     }
   }
   return true;
@@ -99,8 +100,8 @@ Result<std::string> find_program(const std::string& name) {
   const fs::path self = fs::read_symlink("/proc/self/exe", error);
   if (!error) {
     folders.push_back(self.parent_path());
-    folders.push_back(self.parent_path().parent_path() / name);                  // build/tools/camloc -> build/tools/camloc-map
-    folders.push_back(self.parent_path().parent_path().parent_path() / "daemon"); // build/tools/camloc -> build/daemon
+    folders.push_back(self.parent_path().parent_path() / name);                    // build/tools/camloc -> build/tools/camloc-map
+    folders.push_back(self.parent_path().parent_path().parent_path() / "daemon");  // build/tools/camloc -> build/daemon
   }
   const char* path_variable = std::getenv("PATH");
   std::istringstream entries(path_variable == nullptr ? "" : path_variable);
@@ -120,13 +121,13 @@ Result<ProgramOutput> run_program(const std::string& path, const std::vector<std
                                   std::chrono::milliseconds timeout) {
   Pipe out;
   Pipe err;
-  if (out.ends[0] < 0 || err.ends[0] < 0) return system_error("cannot make a pipe");
+  if (!out.read_end.is_open() || !err.read_end.is_open()) return system_error("cannot make a pipe");
   const auto pointers = argument_pointers(path, arguments);
   const pid_t child = ::fork();
   if (child < 0) return system_error("cannot fork");
   if (child == 0) become(path, pointers, out, err);
-  out.close_end(1);
-  err.close_end(1);
+  out.write_end.reset();
+  err.write_end.reset();
 
   ProgramOutput output;
   const bool is_done = drain(&out, &err, &output, std::chrono::steady_clock::now() + timeout);

@@ -19,9 +19,9 @@ namespace camloc::tools {
 [[nodiscard]] Status exec_program(const std::string& path, const std::vector<std::string>& arguments);
 
 struct ProgramOutput {
-  int exit_code = 0;   ///< 128 + signal where it was killed
-  std::string out;     ///< stdout
-  std::string err;     ///< stderr
+  int exit_code = 0;  ///< 128 + signal where it was killed
+  std::string out;    ///< stdout
+  std::string err;    ///< stderr
 };
 
 /// Runs a program to its end with no input. kTimeout: it was killed.
