@@ -44,7 +44,7 @@ class Localizer {
  private:
   /// A hypothesis together with the verdict on it.
   struct Candidate {
-    PoseHypothesis hypothesis;
+    PoseHypothesis hypothesis{};
     double margin = 1;
     bool is_tracked = false;
     Reason reason = Reason::kNotStarted;  ///< kNone: verified

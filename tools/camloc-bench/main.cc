@@ -1,0 +1,201 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// `camloc bench`: time of every stage and accuracy, side by side with plain OpenCV calls on the same frames in one run.
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+
+#include "drivers/frame_source.h"
+#include "drivers/sequence.h"
+#include "drivers/source_url.h"
+#include "tools/camloc-bench/opencv_reference.h"
+#include "tools/camloc/commands.h"
+#include "tools/camloc/sequence_run.h"
+#include "tools/camloc/trajectory_error.h"
+
+namespace {
+
+using camloc::tools::EstimatedTrajectory;
+using camloc::tools::TrajectoryErrors;
+using Json = nlohmann::ordered_json;
+
+struct BenchArguments {
+  camloc::tools::SequenceRunOptions run;
+  std::string mode = "track";
+  std::string clock = "wall";
+  bool has_reference = false;
+  bool is_json = false;
+  int repeat = 1;
+};
+
+std::int64_t thread_cpu_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return now.tv_sec * 1'000'000'000LL + now.tv_nsec;
+}
+
+/// Milliseconds of one stage over all frames.
+struct Samples {
+  std::string name;
+  std::vector<double> ms;
+
+  void add(std::int64_t ns) { ms.push_back(1e-6 * static_cast<double>(ns)); }
+  [[nodiscard]] double percentile(double fraction) const {
+    if (ms.empty()) return 0;
+    std::vector<double> sorted = ms;
+    std::sort(sorted.begin(), sorted.end());
+    return sorted[static_cast<std::size_t>(std::lround(fraction * static_cast<double>(sorted.size() - 1)))];
+  }
+};
+
+/// One contestant: its stages (the last is the total) and its trajectory.
+struct Contestant {
+  std::string name;
+  std::vector<Samples> stages;
+  EstimatedTrajectory trajectory;
+  std::optional<TrajectoryErrors> errors;
+};
+
+/// Poses recorded with the sequence, as the colour camera's; empty where there are none.
+std::vector<camloc::StampedPose> recorded_poses(const BenchArguments& arguments, const camloc::RgbdCamera& camera) {
+  std::vector<camloc::StampedPose> out;
+  const auto url = camloc::parse_source_url(arguments.run.sequence_url);
+  if (!url || url->scheme != "replay") return out;
+  const auto sequence = camloc::read_sequence(url->path);
+  if (!sequence) return out;
+  const auto poses = camloc::read_embedded_poses(*sequence);
+  if (!poses) return out;
+  for (std::size_t i = 0; i < poses->size(); ++i) {
+    if (!(*poses)[i]) continue;
+    const camloc::Rigid3 T = camera.poses_are_of_depth_camera ? *(*poses)[i] * camera.T_color_depth.inverse() : *(*poses)[i];
+    out.push_back({sequence->frames[i].stamp_ns, T});
+  }
+  return out;
+}
+
+Contestant new_contestant(const std::string& name, const std::vector<std::string>& stages) {
+  Contestant contestant{.name = name, .stages = {}, .trajectory = {}, .errors = {}};
+  for (const std::string& stage : stages) contestant.stages.push_back({stage, {}});
+  return contestant;
+}
+
+void record(const camloc::Localization& result, Contestant* contestant) {
+  for (int i = 0; i < camloc::kNumStages; ++i) contestant->stages[static_cast<std::size_t>(i)].add(result.stage_ns[static_cast<std::size_t>(i)]);
+  if (result.state == camloc::State::kLocalized) contestant->trajectory.poses.push_back({result.stamp_ns, result.T_map_camera, result.covariance});
+}
+
+void record(const camloc::bench::ReferenceResult& result, std::int64_t stamp_ns, Contestant* contestant) {
+  contestant->stages[0].add(result.extract_ns);
+  contestant->stages[1].add(result.match_ns);
+  contestant->stages[2].add(result.estimate_ns);
+  contestant->stages[3].add(result.total_ns());
+  if (result.T_map_camera) contestant->trajectory.poses.push_back({stamp_ns, *result.T_map_camera, std::nullopt});
+}
+
+/// Median over the frames of reference time / our time: robust when the machine's speed drifts during the run.
+double median_ratio(const Contestant& ours, const Contestant& reference) {
+  Samples ratios{"ratio", {}};
+  const auto& a = ours.stages.back().ms;
+  const auto& b = reference.stages.back().ms;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) ratios.ms.push_back(b[i] / std::max(1e-6, a[i]));
+  return ratios.percentile(0.5);
+}
+
+void print_table(const std::vector<Contestant>& contestants, std::uint64_t num_frames, const BenchArguments& arguments) {
+  std::printf("%llu frames, mode %s, %s time, milliseconds\n", static_cast<unsigned long long>(num_frames), arguments.mode.c_str(), arguments.clock.c_str());
+  for (const Contestant& contestant : contestants) {
+    std::printf("\n%-22s %8s %8s %8s\n", contestant.name.c_str(), "p50", "p95", "p99");
+    for (const Samples& stage : contestant.stages) {
+      std::printf("  %-20s %8.3f %8.3f %8.3f\n", stage.name.c_str(), stage.percentile(0.5), stage.percentile(0.95), stage.percentile(0.99));
+    }
+    std::printf("  poses %zu", contestant.trajectory.poses.size());
+    if (contestant.errors) {
+      const TrajectoryErrors& e = *contestant.errors;
+      std::printf(", median %.2f cm / %.2f deg, p90 %.2f cm, within 5cm/5deg %.1f %%, misleading %llu", 100 * e.translation_m.median, e.rotation_deg.median,
+                  100 * e.translation_m.p90, 100 * e.share_within[1], static_cast<unsigned long long>(e.num_misleading));
+    }
+    std::printf("\n");
+  }
+  if (contestants.size() == 2) std::printf("\nper frame, the reference takes %.1f times as long (median)\n", median_ratio(contestants[0], contestants[1]));
+}
+
+void print_json(const std::vector<Contestant>& contestants, std::uint64_t num_frames, const BenchArguments& arguments) {
+  Json json{{"frames", num_frames}, {"mode", arguments.mode}, {"clock", arguments.clock}};
+  for (const Contestant& contestant : contestants) {
+    Json stages;
+    for (const Samples& stage : contestant.stages) stages[stage.name] = {{"p50", stage.percentile(0.5)}, {"p95", stage.percentile(0.95)}, {"p99", stage.percentile(0.99)}};
+    Json entry{{"stages_ms", stages}, {"poses", contestant.trajectory.poses.size()}};
+    if (contestant.errors) {
+      const TrajectoryErrors& e = *contestant.errors;
+      entry["translation_m"] = {{"median", e.translation_m.median}, {"mean", e.translation_m.mean}, {"p90", e.translation_m.p90}, {"max", e.translation_m.max}};
+      entry["rotation_deg"] = {{"median", e.rotation_deg.median}, {"p90", e.rotation_deg.p90}};
+      entry["within_5cm_5deg"] = e.share_within[1];
+      entry["within_10cm_10deg"] = e.share_within[2];
+      entry["misleading"] = e.num_misleading;
+    }
+    json[contestant.name] = entry;
+  }
+  if (contestants.size() == 2) json["reference_time_ratio"] = median_ratio(contestants[0], contestants[1]);
+  std::printf("%s\n", json.dump(1).c_str());
+}
+
+camloc::Status bench(const BenchArguments& arguments) {
+  const camloc::StageTimer::Clock clock = arguments.clock == "cpu" ? thread_cpu_ns : camloc::tools::monotonic_ns;
+  std::vector<Contestant> contestants;
+  contestants.push_back(new_contestant("camloc", {"extract", "candidates", "match", "estimate", "verify", "total"}));
+  if (arguments.has_reference) contestants.push_back(new_contestant("opencv", {"extract (cv::ORB)", "match (BFMatcher)", "estimate (PnP)", "total"}));
+
+  std::uint64_t num_frames = 0;
+  std::vector<camloc::StampedPose> truth;
+  for (int pass = 0; pass < arguments.repeat; ++pass) {
+    auto run = camloc::tools::open_sequence_run(arguments.run);
+    if (!run) return run.status();
+    camloc::LocalizerOptions options;
+    options.use_tracking = !arguments.run.is_single;
+    options.now_ns = clock;
+    camloc::Localizer localizer(*run->map, run->camera, options);
+    camloc::bench::ReferenceOptions reference_options;
+    reference_options.is_tracking = !arguments.run.is_single;
+    camloc::bench::OpencvReference reference(*run->map, run->camera, reference_options, clock);
+    const auto counts = camloc::tools::for_each_frame(*run, [&](const camloc::Frame& frame) {
+      record(localizer.process(frame), &contestants[0]);
+      if (arguments.has_reference) record(reference.process(frame), frame.stamp_ns, &contestants[1]);
+    });
+    if (!counts) return counts.status();
+    num_frames += counts->num_frames;
+    if (pass == 0) truth = recorded_poses(arguments, run->camera);
+  }
+  if (!truth.empty()) {
+    for (Contestant& contestant : contestants) {
+      contestant.errors = camloc::tools::compare(contestant.trajectory, [&](std::int64_t stamp_ns) { return camloc::pose_at(truth, stamp_ns); }, num_frames, false);
+    }
+  }
+  if (arguments.is_json) print_json(contestants, num_frames, arguments);
+  else print_table(contestants, num_frames, arguments);
+  return camloc::Status::ok();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cv::setNumThreads(1);
+  BenchArguments arguments;
+  CLI::App app("Time and accuracy of localization, stage by stage", "camloc bench");
+  app.add_option("--map", arguments.run.map_path, "Map (.cmap)")->required();
+  app.add_option("--sequence", arguments.run.sequence_url, "Folder or URL of the recording")->required();
+  app.add_option("--camera", arguments.run.camera_path, "Camera file")->required();
+  app.add_option("--frames", arguments.run.frames, "Frames to use: start:stop:step[,...]");
+  app.add_option("--mode", arguments.mode, "track: frames follow each other; single: every frame on its own")->check(CLI::IsMember({"track", "single"}))->capture_default_str();
+  app.add_option("--clock", arguments.clock, "wall, or cpu: time of this thread only, steadier on a busy machine")->check(CLI::IsMember({"wall", "cpu"}))->capture_default_str();
+  app.add_option("--repeat", arguments.repeat, "Passes over the sequence")->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_flag("--reference-opencv", arguments.has_reference, "Also run cv::ORB + cv::BFMatcher + cv::solvePnPRansac on the same frames");
+  app.add_flag("--json", arguments.is_json, "Print JSON");
+  CLI11_PARSE(app, argc, argv);
+  arguments.run.is_single = arguments.mode == "single";
+  return camloc::tools::report(bench(arguments));
+}

@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// `camloc eval`: a trajectory against a reference.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/map/map_view.h"
+#include "drivers/camera_file.h"
+#include "drivers/frame_selection.h"
+#include "drivers/sequence.h"
+#include "tools/camloc/commands.h"
+#include "tools/camloc/top_view.h"
+#include "tools/camloc/trajectory_error.h"
+
+namespace camloc::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct EvalArguments {
+  std::string estimate_path, reference_path, align = "none", frames, camera_path, map_path, png_path;
+  bool is_json = false;
+};
+
+/// The reference as poses of the colour camera, and how many frames it has.
+struct Reference {
+  std::vector<StampedPose> poses;
+  std::uint64_t num_frames = 0;
+};
+
+Result<Reference> read_reference_folder(const EvalArguments& arguments, const std::optional<Rigid3>& T_color_depth) {
+  auto sequence = read_sequence(arguments.reference_path);
+  if (!sequence) return sequence.status();
+  auto selected = select_frames(arguments.frames, "", sequence->frames.size());
+  if (!selected) return selected.status();
+  auto poses = read_embedded_poses(*sequence);
+  if (!poses) return poses.status();
+  Reference reference;
+  reference.num_frames = selected->size();
+  for (const std::size_t i : *selected) {
+    if (!(*poses)[i]) continue;
+    Rigid3 T_map_color = *(*poses)[i];
+    if (T_color_depth) T_map_color = T_map_color * T_color_depth->inverse();
+    reference.poses.push_back({sequence->frames[i].stamp_ns, T_map_color});
+  }
+  return reference;
+}
+
+Result<Reference> read_reference(const EvalArguments& arguments, const EstimatedTrajectory& estimate) {
+  if (!std::filesystem::is_directory(arguments.reference_path)) {
+    auto poses = read_tum_trajectory(arguments.reference_path);
+    if (!poses) return poses.status();
+    const std::uint64_t count = poses->size();
+    return Reference{std::move(poses).value(), count};
+  }
+  std::optional<Rigid3> T_color_depth = estimate.T_color_depth;
+  if (!arguments.camera_path.empty()) {
+    auto camera = read_camera_file(arguments.camera_path);
+    if (!camera) return camera.status();
+    T_color_depth = camera->poses_are_of_depth_camera ? std::optional(camera->T_color_depth) : std::nullopt;
+  }
+  return read_reference_folder(arguments, T_color_depth);
+}
+
+Json statistics_json(const ErrorStatistics& s) { return {{"median", s.median}, {"mean", s.mean}, {"p90", s.p90}, {"max", s.max}}; }
+
+Json errors_json(const TrajectoryErrors& errors, const EstimatedTrajectory& estimate) {
+  Json within;
+  for (std::size_t i = 0; i < kErrorLimits.size(); ++i) within[kErrorLimits[i].name] = errors.share_within[i];
+  Json json{{"frames", errors.num_frames},
+            {"localized", errors.num_localized},
+            {"compared", errors.num_compared},
+            {"translation_m", statistics_json(errors.translation_m)},
+            {"rotation_deg", statistics_json(errors.rotation_deg)},
+            {"within", within},
+            {"misleading", errors.num_misleading},
+            {"misleading_share", errors.num_frames == 0 ? 0.0 : static_cast<double>(errors.num_misleading) / static_cast<double>(errors.num_frames)},
+            {"nees", nullptr},
+            {"inside_95", nullptr},
+            {"calibration_suspect", estimate.suspect_focal_scale.has_value()}};
+  if (errors.num_with_covariance > 0) {
+    json["nees"] = {{"mean", errors.nees_mean}, {"median", errors.nees_median}};
+    json["inside_95"] = errors.share_inside_95;
+  }
+  return json;
+}
+
+void print_errors(const TrajectoryErrors& errors, const EstimatedTrajectory& estimate) {
+  const auto percent = [](double share) { return 100.0 * share; };
+  std::printf("frames        %llu, localized %llu (%.1f %%), compared %llu\n", static_cast<unsigned long long>(errors.num_frames),
+              static_cast<unsigned long long>(errors.num_localized),
+              errors.num_frames == 0 ? 0.0 : percent(static_cast<double>(errors.num_localized) / static_cast<double>(errors.num_frames)),
+              static_cast<unsigned long long>(errors.num_compared));
+  std::printf("              %10s %10s %10s %10s\n", "median", "mean", "p90", "max");
+  const auto row = [](const char* name, const ErrorStatistics& s) { std::printf("%-13s %10.4f %10.4f %10.4f %10.4f\n", name, s.median, s.mean, s.p90, s.max); };
+  row("translation m", errors.translation_m);
+  row("rotation deg", errors.rotation_deg);
+  for (std::size_t i = 0; i < kErrorLimits.size(); ++i) std::printf("within %-12s %6.1f %% of all frames\n", kErrorLimits[i].name, percent(errors.share_within[i]));
+  std::printf("misleading    %llu (localized, but farther off than 25 cm or 10 deg)\n", static_cast<unsigned long long>(errors.num_misleading));
+  if (errors.num_with_covariance > 0) {
+    std::printf("covariance    NEES mean %.2f median %.2f (honest: 6, 5.35), %.1f %% inside the 95 %% ellipsoid\n", errors.nees_mean, errors.nees_median,
+                percent(errors.share_inside_95));
+  }
+  if (estimate.suspect_focal_scale) std::printf("WARNING       calibration: focal length should be %.3f times the one used\n", *estimate.suspect_focal_scale);
+}
+
+Status draw(const EvalArguments& arguments, const EstimatedTrajectory& estimate, const Reference& reference, const TrajectoryErrors& errors) {
+  std::optional<MapView> map;
+  if (!arguments.map_path.empty()) {
+    auto opened = MapView::open(arguments.map_path);
+    if (!opened) return opened.status();
+    map.emplace(std::move(opened).value());
+  }
+  TopView view;
+  view.map = map ? &*map : nullptr;
+  for (const StampedPose& pose : reference.poses) view.truth.push_back(pose.T_world_camera);
+  for (const EstimatedPose& pose : estimate.poses) {
+    const Rigid3 T = errors.T_reference_estimate ? *errors.T_reference_estimate * pose.T_map_camera : pose.T_map_camera;
+    const auto truth = pose_at(reference.poses, pose.stamp_ns);
+    view.estimate.push_back(T);
+    view.error_m.push_back(truth ? (truth->translation - T.translation).norm() : 0.0);
+  }
+  char title[160];
+  std::snprintf(title, sizeof title, "%llu of %llu frames localized, median %.1f cm / %.2f deg, %llu misleading", static_cast<unsigned long long>(errors.num_localized),
+                static_cast<unsigned long long>(errors.num_frames), 100.0 * errors.translation_m.median, errors.rotation_deg.median,
+                static_cast<unsigned long long>(errors.num_misleading));
+  view.title = title;
+  return write_top_view(view, arguments.png_path);
+}
+
+Status eval(const EvalArguments& arguments) {
+  auto estimate = read_trajectory(arguments.estimate_path);
+  if (!estimate) return estimate.status();
+  auto reference = read_reference(arguments, *estimate);
+  if (!reference) return reference.status();
+  const bool is_counted = estimate->num_frames.has_value() && arguments.frames.empty();
+  const std::uint64_t num_frames = is_counted ? *estimate->num_frames : std::max<std::uint64_t>(reference->num_frames, estimate->poses.size());
+  const auto pose = [&](std::int64_t stamp_ns) { return pose_at(reference->poses, stamp_ns); };
+  const TrajectoryErrors errors = compare(*estimate, pose, num_frames, arguments.align == "se3");
+  if (errors.num_compared == 0 && errors.num_localized > 0) {
+    return {ErrorCode::kInvalid, arguments.reference_path + ": has no pose at the times of " + arguments.estimate_path + ": is it of the same recording?"};
+  }
+  if (arguments.is_json) std::printf("%s\n", errors_json(errors, *estimate).dump(1).c_str());
+  else print_errors(errors, *estimate);
+  return arguments.png_path.empty() ? Status::ok() : draw(arguments, *estimate, *reference, errors);
+}
+
+}  // namespace
+
+void add_eval_command(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<EvalArguments>();
+  CLI::App* command = app.add_subcommand("eval", "Compare a trajectory with a reference");
+  command->add_option("--estimate", arguments->estimate_path, "Trajectory in TUM format")->required();
+  command->add_option("--reference", arguments->reference_path, "Trajectory in TUM format, or folder of a recording with poses")->required();
+  command->add_option("--align", arguments->align, "none: same frame; se3: take out the best rigid motion first")
+      ->check(CLI::IsMember({"none", "se3"}))->capture_default_str();
+  command->add_option("--frames", arguments->frames, "With a reference folder: the frames that were tried, start:stop:step[,...]");
+  command->add_option("--camera", arguments->camera_path, "Camera file that says whose poses the folder has (default: as noted in the estimate)");
+  command->add_option("--map", arguments->map_path, "Map to draw in the picture");
+  command->add_option("--png", arguments->png_path, "Write a top view of map, reference and estimate");
+  command->add_flag("--json", arguments->is_json, "Print JSON");
+  command->footer("Example: camloc eval --estimate traj.tum --reference recordings/kitchen --map kitchen.cmap --png result.png");
+  command->callback([arguments, &exit_code] { exit_code = report(eval(*arguments)); });
+}
+
+}  // namespace camloc::tools

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// `camloc map info` and `camloc map verify`: what is in a map file, and whether it is whole.
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "core/map/map_view.h"
+#include "tools/camloc/commands.h"
+#include "tools/camloc/sequence_run.h"
+
+namespace camloc::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct MapArguments {
+  std::string path;
+  bool is_json = false;
+};
+
+double bytes_per_landmark(const MapInfo& info) { return info.num_landmarks == 0 ? 0.0 : static_cast<double>(info.file_bytes) / info.num_landmarks; }
+
+void print_json(const MapInfo& info, double open_ms) {
+  char id[20];
+  std::snprintf(id, sizeof id, "%016llx", static_cast<unsigned long long>(info.map_id));
+  const Json json{{"path", info.path},
+                  {"name", info.name},
+                  {"map_id", id},
+                  {"version", info.version},
+                  {"bytes", info.file_bytes},
+                  {"bytes_per_landmark", bytes_per_landmark(info)},
+                  {"landmarks", info.num_landmarks},
+                  {"descriptors", info.num_descriptors},
+                  {"keyframes", info.num_keyframes},
+                  {"words", info.num_words},
+                  {"submaps", info.num_submaps},
+                  {"pose_sigma_m", info.pose_sigma_m},
+                  {"pose_sigma_deg", info.pose_sigma_rad * 180.0 / std::numbers::pi},
+                  {"camera", info.camera.name},
+                  {"georeferenced", info.wcs.has_value()},
+                  {"open_ms", open_ms}};
+  std::printf("%s\n", json.dump(1).c_str());
+}
+
+void print_table(const MapInfo& info, double open_ms) {
+  std::printf("map          %s%s%s\n", info.path.c_str(), info.name.empty() ? "" : ", ", info.name.c_str());
+  std::printf("id           %016llx, format version %u\n", static_cast<unsigned long long>(info.map_id), info.version);
+  std::printf("size         %.3f MB, %.1f bytes a landmark, opened in %.2f ms\n", 1e-6 * static_cast<double>(info.file_bytes), bytes_per_landmark(info), open_ms);
+  std::printf("landmarks    %u with %u descriptors in %u sub-maps\n", info.num_landmarks, info.num_descriptors, info.num_submaps);
+  std::printf("keyframes    %u (the minimum set that covers all landmarks), %u words\n", info.num_keyframes, info.num_words);
+  std::printf("mapping      recorded poses agree to %.1f cm and %.2f deg per axis\n", 100.0 * info.pose_sigma_m, info.pose_sigma_rad * 180.0 / std::numbers::pi);
+  std::printf("camera       %s\n", info.camera.name.c_str());
+  std::printf("world frame  %s\n", info.wcs ? "set: poses can be given in the site's coordinates" : "not set: poses are in the map's own frame");
+}
+
+Status show_info(const MapArguments& arguments) {
+  const std::int64_t started_ns = monotonic_ns();
+  auto map = MapView::open(arguments.path);
+  if (!map) return map.status();
+  const double open_ms = 1e-6 * static_cast<double>(monotonic_ns() - started_ns);
+  if (arguments.is_json) print_json(map->info(), open_ms);
+  else print_table(map->info(), open_ms);
+  return Status::ok();
+}
+
+Status verify_map(const MapArguments& arguments) {
+  // Opening checks everything: sizes, checksums, every index and range.
+  auto map = MapView::open(arguments.path);
+  if (!map) return map.status();
+  std::printf("%s: whole: %u landmarks, %u keyframes, all checksums and indices right\n", arguments.path.c_str(), map->info().num_landmarks, map->info().num_keyframes);
+  return Status::ok();
+}
+
+}  // namespace
+
+void add_map_command(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<MapArguments>();
+  CLI::App* command = app.add_subcommand("map", "Look at a map; build one with the program camloc-map");
+  command->require_subcommand(1);
+  CLI::App* info = command->add_subcommand("info", "What is in a map");
+  info->add_option("MAP", arguments->path, "Map file (.cmap)")->required();
+  info->add_flag("--json", arguments->is_json, "Print JSON");
+  info->callback([arguments, &exit_code] { exit_code = report(show_info(*arguments)); });
+  CLI::App* verify = command->add_subcommand("verify", "Check every byte and index of a map; exit code 0 when whole");
+  verify->add_option("MAP", arguments->path, "Map file (.cmap)")->required();
+  verify->callback([arguments, &exit_code] { exit_code = report(verify_map(*arguments)); });
+}
+
+}  // namespace camloc::tools
