@@ -1,7 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Camera calibration files: our TOML, and the YAML of kalibr (camchain), ROS (camera_info) and OpenCV / ORB-SLAM.
+// Camera calibration files: our TOML, and the YAML of kalibr (camchain), ROS (camera_info) and OpenCV / ORB-SLAM. The
+// kind is told from the content, not from the file's name. Examples of the TOML are in config/cameras.
+//
+// The YAML kinds describe the colour camera only: depth is taken as registered, 1 mm a unit unless DepthMapFactor says
+// otherwise. Of a camchain cam0 is read.
 #pragma once
 
 #include <string>
@@ -11,8 +15,10 @@
 
 namespace camloc {
 
-/// Errors name file and line or key. Unknown keys in our own TOML are errors.
+/// Errors name file and line or key. Unknown keys in our own TOML are errors. The camera passed RgbdCamera::validate().
 [[nodiscard]] Result<RgbdCamera> read_camera_file(const std::string& path);
+/// The same from memory; `name` is for messages, and names the camera where the text does not.
+[[nodiscard]] Result<RgbdCamera> parse_camera(const std::string& text, const std::string& name);
 /// Our TOML, readable by read_camera_file to the last bit.
 [[nodiscard]] std::string format_camera_toml(const RgbdCamera& camera);
 

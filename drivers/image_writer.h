@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Writes PNG and JPEG files for tools and tests. Reading is in image_file.h.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/base/frame.h"
+#include "core/base/result.h"
+#include "drivers/image_file.h"
+
+namespace camloc {
+
+/// `pixels`: rows of width * channels bytes without gaps; channels 1 (grey) or 3 (red, green, blue). kIo names the file and
+/// the reason; a file that could not be written whole is removed.
+[[nodiscard]] Status write_png(const std::string& path, const std::uint8_t* pixels, int width, int height, int channels);
+[[nodiscard]] Status write_png(const std::string& path, const Image<std::uint8_t>& gray);
+[[nodiscard]] Status write_png(const std::string& path, const ColorImage& color);
+/// 16-bit grey, the raw units of a depth camera.
+[[nodiscard]] Status write_depth_png(const std::string& path, const Image<std::uint16_t>& depth);
+/// As write_png; quality 1 to 100.
+[[nodiscard]] Status write_jpeg(const std::string& path, const std::uint8_t* pixels, int width, int height, int channels, int quality = 95);
+[[nodiscard]] Status write_jpeg(const std::string& path, const ColorImage& color, int quality = 95);
+
+}  // namespace camloc
