@@ -1,0 +1,127 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The camloc authors
+# SPDX-License-Identifier: Apache-2.0
+"""The layer rule, checked on the #include lines of every file.
+
+    tests -> everything    tools -> drivers, core, lcmtypes    daemon -> drivers, core, lcmtypes
+    drivers -> core/base, core/geometry    core: base <- geometry <- features <- map <- localize
+
+core/ has no thread, socket, file watcher, clock read or print; what is shipped never includes OpenCV's codecs, windows or
+video, and only the coarse CNN includes its networks. Usage: layers_test.py ROOT
+"""
+import pathlib
+import re
+import sys
+import tempfile
+import unittest
+
+CORE = ["core/base", "core/geometry", "core/features", "core/map", "core/localize"]
+LCM_TYPES = ["camloc", "bot_core"]
+# What a folder may include besides itself. Of several that match a file, the longest rules.
+ALLOWED = {folder: CORE[:i] for i, folder in enumerate(CORE)}
+ALLOWED["drivers"] = ["core/base", "core/geometry"]
+ALLOWED["daemon"] = ["drivers", *CORE, *LCM_TYPES]
+ALLOWED["tools"] = ["drivers", *CORE, *LCM_TYPES]
+
+CORE_FORBIDDEN_HEADERS = re.compile(
+    r"^<(thread|future|mutex|shared_mutex|condition_variable|semaphore|latch|barrier|stop_token|pthread\.h|iostream|ostream|"
+    r"print|syslog\.h|sys/socket\.h|sys/un\.h|netinet/.*|arpa/.*|netdb\.h|poll\.h|sys/epoll\.h|sys/inotify\.h|sys/time\.h|"
+    r"time\.h|ctime|lcm/.*|systemd/.*)>$")
+CORE_FORBIDDEN_CALLS = re.compile(
+    r"\b(std::)?(printf|fprintf|vprintf|vfprintf|puts|fputs|putchar|perror|syslog)\s*\(|std::(cout|cerr|clog)\b|"
+    r"(steady|system|high_resolution)_clock::now|\b(clock_gettime|gettimeofday|clock)\s*\(|\btime\s*\((nullptr|NULL|0)\)")
+SHIPPED_FORBIDDEN_HEADERS = re.compile(r"^<opencv2/(imgcodecs|highgui|videoio|opencv)(\.hpp|/.*)>$")
+NETWORK_HEADERS = re.compile(r"^<opencv2/dnn(\.hpp|/.*)>$")
+INCLUDE = re.compile(r'^\s*#\s*include\s*(<[^>]+>|"[^"]+")')
+
+
+def layer_of(path):
+    """The longest folder with a rule that holds `path`, or None."""
+    folders = [folder for folder in ALLOWED if path.startswith(folder + "/")]
+    return max(folders, key=len) if folders else None
+
+
+def include_error(path, layer, target):
+    """Why the file `path` of `layer` may not include `target` (with its brackets or quotes), or None."""
+    name = target[1:-1]
+    if layer.startswith("core/") and CORE_FORBIDDEN_HEADERS.match(target):
+        return "core has no thread, socket, watcher, clock or print"
+    if layer != "tools" and SHIPPED_FORBIDDEN_HEADERS.match(target):
+        return "the daemon must not pull in OpenCV's codecs, windows or video"
+    if NETWORK_HEADERS.match(target) and not path.startswith("core/localize/coarse_cnn"):
+        return "only core/localize/coarse_cnn uses OpenCV's networks"
+    if target.startswith('"') and "/" not in name:
+        return "write the path from the top of the tree"
+    is_ours = name.split("/")[0] in ("core", "drivers", "daemon", "tools", "tests", *LCM_TYPES)
+    if not is_ours or any(name.startswith(folder + "/") for folder in [layer, *ALLOWED[layer]]):
+        return None
+    return f"{layer} may include only itself{''.join(', ' + folder for folder in ALLOWED[layer])}"
+
+
+def violations(root):
+    """Lines "file:line: what: why" for every breach in the tree, and the number of files read."""
+    found, num_files = [], 0
+    for top in ("core", "drivers", "daemon", "tools"):
+        for file in sorted((root / top).rglob("*")):
+            path = file.relative_to(root).as_posix()
+            if file.suffix not in (".h", ".cc", ".hpp", ".cpp", ".c"):
+                continue
+            num_files += 1
+            layer = layer_of(path)
+            if layer is None:
+                found.append(f"{path}:1: belongs to no layer")
+                continue
+            for number, line in enumerate(file.read_text().splitlines(), 1):
+                include = INCLUDE.match(line)
+                error = include_error(path, layer, include.group(1)) if include else None
+                if error:
+                    found.append(f"{path}:{number}: {include.group(1)}: {error}")
+                call = CORE_FORBIDDEN_CALLS.search(line.split("//")[0]) if path.startswith("core/") else None
+                if call:
+                    found.append(f"{path}:{number}: {call.group(0).strip()}: core neither prints nor reads a clock")
+    return found, num_files
+
+
+class RuleTest(unittest.TestCase):
+    """The checker finds what it is there to find."""
+
+    def check(self, path, line):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, path)
+            file.parent.mkdir(parents=True)
+            file.write_text(line + "\n")
+            return violations(pathlib.Path(folder))[0]
+
+    def test_finds_breaches(self):
+        for path, line in [("core/base/a.h", '#include "core/geometry/rigid3.h"'), ("core/features/a.cc", '#include "core/map/map_view.h"'),
+                           ("core/map/a.cc", '#include "drivers/sequence.h"'), ("drivers/a.cc", '#include "core/map/map_view.h"'),
+                           ("drivers/a.cc", '#include "camloc/pose_t.hpp"'), ("daemon/a.cc", '#include "tools/camloc/commands.h"'),
+                           ("tools/camloc/a.cc", '  #  include "daemon/config.h"'), ("core/base/a.cc", "#include <thread>"),
+                           ("core/map/a.cc", "#include <iostream>"), ("core/map/a.cc", 'std::fprintf(stderr, "x");'),
+                           ("core/localize/a.cc", "auto t = std::chrono::steady_clock::now();"), ("daemon/a.cc", "#include <opencv2/highgui.hpp>"),
+                           ("core/localize/a.cc", "#include <opencv2/dnn.hpp>"), ("core/map/a.cc", '#include "map_view.h"'), ("core/a.cc", "")]:
+            self.assertEqual(len(self.check(path, line)), 1, (path, line))
+
+    def test_allows_what_is_allowed(self):
+        for path, line in [("core/localize/a.cc", '#include "core/map/map_view.h"'), ("drivers/a.cc", '#include "core/geometry/camera.h"'),
+                           ("daemon/a.cc", '#include "camloc/pose_t.hpp"'), ("tools/camloc-map/a.cc", '#include "tools/camloc/commands.h"'),
+                           ("tools/camloc-map/a.cc", "#include <opencv2/imgcodecs.hpp>"), ("core/map/a.cc", "// printf() is not used here"),
+                           ("core/base/a.h", "#include <vector>"), ("core/map/a.cc", "std::snprintf(text, 3, format);")]:
+            self.assertEqual(self.check(path, line), [], (path, line))
+
+
+def main():
+    if len(sys.argv) != 2:
+        print(__doc__, file=sys.stderr)
+        return 2
+    suite = unittest.defaultTestLoader.loadTestsFromTestCase(RuleTest)
+    if not unittest.TextTestRunner().run(suite).wasSuccessful():
+        return 1
+    found, num_files = violations(pathlib.Path(sys.argv[1]))
+    print("\n".join(found))
+    print(f"{num_files} files, {len(found)} breaches of the layer rule")
+    return 1 if found or num_files == 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
