@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// TOML to Config. The only file of the daemon that sees toml++.
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include "daemon/config.h"
+
+#define TOML_EXCEPTIONS 0
+#include <toml++/toml.h>
+
+namespace camloc {
+namespace {
+
+constexpr std::size_t kMaxFileBytes = 1 << 20;  // a mistaken path should not fill the memory
+
+std::string at(const std::string& name, const toml::source_region& where) { return name + ":" + std::to_string(where.begin.line); }
+
+SettingValue value_of_node(const toml::node& node, bool* is_supported) {
+  *is_supported = true;
+  if (const auto* flag = node.as_boolean()) return flag->get();
+  if (const auto* number = node.as_integer()) return number->get();
+  if (const auto* text = node.as_string()) return text->get();
+  *is_supported = false;
+  return false;
+}
+
+std::string known_keys(std::string_view section) {
+  std::string out;
+  for (const Setting& setting : settings()) {
+    if (section == setting.section) out += (out.empty() ? "" : ", ") + std::string(setting.key);
+  }
+  return out;
+}
+
+Status parse_section(const std::string& section, const toml::table& table, const std::string& name, Config* config) {
+  for (const auto& [key, node] : table) {
+    const std::string where = at(name, key.source());
+    const Setting* setting = find_setting(section, key.str());
+    if (setting == nullptr) {
+      return {ErrorCode::kInvalid, where + ": " + section + "." + std::string(key.str()).substr(0, 40) + ": unknown key; [" + section +
+                                       "] has " + known_keys(section)};
+    }
+    bool is_supported = false;
+    const SettingValue value = value_of_node(node, &is_supported);
+    if (!is_supported) return {ErrorCode::kInvalid, where + ": " + setting->name() + ": wrong type; see camlocd --print-config"};
+    if (const Status status = assign(*setting, value, config); !status) return status.with_context(where);
+  }
+  return Status::ok();
+}
+
+Result<std::string> read_text(const std::string& path) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "re"), std::fclose);
+  const auto failed = [&] {
+    return Status(errno == ENOENT ? ErrorCode::kNotFound : ErrorCode::kIo, "cannot read configuration " + path + ": " + std::strerror(errno));
+  };
+  if (file == nullptr) return failed();
+  std::string text(kMaxFileBytes + 1, '\0');
+  text.resize(std::fread(text.data(), 1, text.size(), file.get()));
+  if (std::ferror(file.get()) != 0) return failed();
+  if (text.size() > kMaxFileBytes) return Status(ErrorCode::kInvalid, "configuration " + path + " is larger than 1 MiB");
+  return text;
+}
+
+/// Sorted by name; none when the folder does not exist.
+Result<std::vector<std::string>> drop_ins(const std::string& folder) {
+  std::vector<std::string> paths;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (entry->path().extension() == ".toml") paths.push_back(entry->path());
+  }
+  if (error && error != std::errc::no_such_file_or_directory) {
+    return Status(ErrorCode::kIo, "cannot list " + folder + ": " + error.message());
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+Status merge_file(const std::string& path, Config* config) {
+  const Result<std::string> text = read_text(path);
+  return text ? parse_config(*text, path, config) : text.status();
+}
+
+}  // namespace
+
+Status parse_config(std::string_view text, const std::string& name, Config* config) {
+  const toml::parse_result parsed = toml::parse(text, name);
+  if (!parsed) {
+    return {ErrorCode::kInvalid, at(name, parsed.error().source()) + ": " + std::string(parsed.error().description())};
+  }
+  const toml::table& root = parsed.table();
+  Config result = *config;
+  for (const auto& [section, node] : root) {
+    const std::string title(section.str());
+    const toml::table* table = node.as_table();
+    if (table == nullptr || known_keys(title).empty()) {
+      return {ErrorCode::kInvalid, at(name, section.source()) + ": [" + title.substr(0, 40) +
+                                       "]: unknown section; there are source, map, localize, publish, control, log"};
+    }
+    if (const Status status = parse_section(title, *table, name, &result); !status) return status;
+  }
+  *config = result;
+  return Status::ok();
+}
+
+Result<Config> load_config(const std::string& path, const std::vector<std::string>& arguments) {
+  Config config;
+  if (const Status status = merge_file(path, &config); !status) return status;
+  const Result<std::vector<std::string>> extra = drop_ins(path + ".d");
+  if (!extra) return extra.status();
+  for (const std::string& file : *extra) {
+    if (const Status status = merge_file(file, &config); !status) return status;
+  }
+  for (const std::string& argument : arguments) {
+    if (const Status status = assign_argument(argument, &config); !status) return status.with_context("--set");
+  }
+  return config;
+}
+
+}  // namespace camloc

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Parsing of requests and writing of JSON.
+#include "daemon/control_protocol.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "core/localize/localization.h"
+
+namespace camloc {
+namespace {
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (byte < 0x20 || byte >= 0x7f) {
+      // Paths may hold any bytes; as Latin-1 they are at least valid JSON.
+      std::array<char, 8> code{};
+      std::snprintf(code.data(), code.size(), "\\u%04x", byte);
+      out += code.data();
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+/// Appends members to one flat JSON object.
+class JsonObject {
+ public:
+  void add(const char* key, std::string_view text) { add_raw(key, '"' + escaped(text) + '"'); }
+  void add(const char* key, const char* text) { add(key, std::string_view(text)); }
+  void add(const char* key, bool value) { add_raw(key, value ? "true" : "false"); }
+  void add(const char* key, std::int64_t value) { add_raw(key, std::to_string(value)); }
+  void add(const char* key, double value) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.6g", value);
+    add_raw(key, std::isfinite(value) ? text.data() : "null");
+  }
+  [[nodiscard]] std::string str() const { return text_ + '}'; }
+
+ private:
+  void add_raw(const char* key, const std::string& value) {
+    if (text_.size() > 1) text_ += ',';
+    text_ += std::string("\"") + key + "\":" + value;
+  }
+
+  std::string text_ = "{";
+};
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r";
+  const std::size_t first = text.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
+}  // namespace
+
+Result<ControlCommand> parse_control_request(std::string_view line) {
+  const std::string_view word = trimmed(line);
+  if (word == "status") return ControlCommand::kStatus;
+  if (word == "reload") return ControlCommand::kReload;
+  if (word == "reset") return ControlCommand::kReset;
+  constexpr std::size_t kShown = 40;
+  return Status(ErrorCode::kInvalid,
+                "unknown command '" + std::string(word.substr(0, kShown)) + "': one of status, reload, reset");
+}
+
+std::string control_reply(const Status& status) {
+  JsonObject json;
+  json.add("ok", status.is_ok());
+  if (!status) json.add("error", std::string_view(status.message()));
+  return json.str();
+}
+
+std::string control_reply(const status_t& status) {
+  JsonObject json;
+  std::array<char, 20> map_id{};
+  std::snprintf(map_id.data(), map_id.size(), "%016llx", static_cast<unsigned long long>(status.map_id));
+  json.add("ok", true);
+  json.add("utime", status.utime);
+  json.add("state", to_string(static_cast<State>(status.state)));
+  json.add("state_text", std::string_view(status.state_text));
+  json.add("source", std::string_view(status.source));
+  json.add("map_path", std::string_view(status.map_path));
+  json.add("map_id", map_id.data());
+  json.add("uptime_us", status.uptime_us);
+  json.add("frames_received", status.frames_received);
+  json.add("frames_dropped", status.frames_dropped);
+  json.add("frames_corrupt", status.frames_corrupt);
+  json.add("frames_localized", status.frames_localized);
+  json.add("poses_published", status.poses_published);
+  json.add("reset_counter", status.reset_counter);
+  json.add("map_reloads", status.map_reloads);
+  json.add("map_reload_failures", status.map_reload_failures);
+  json.add("source_restarts", status.source_restarts);
+  json.add("frame_rate_hz", status.frame_rate_hz);
+  json.add("latency_p50_ms", status.latency_p50_ms);
+  json.add("latency_max_ms", status.latency_max_ms);
+  json.add("rss_bytes", status.rss_bytes);
+  json.add("is_calibration_suspect", status.is_calibration_suspect != 0);
+  json.add("focal_scale", status.focal_scale);
+  return json.str();
+}
+
+}  // namespace camloc

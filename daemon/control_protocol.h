@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What is said on the control socket: one line with a command in, one line of JSON out. Pure text, no socket.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "camloc/status_t.hpp"
+#include "core/base/result.h"
+
+namespace camloc {
+
+enum class ControlCommand : std::uint8_t { kStatus, kReload, kReset };
+
+/// One line without its line feed; a carriage return and blanks around the word are forgiven. kInvalid with the list of
+/// commands otherwise; its message quotes the bytes as they came.
+[[nodiscard]] Result<ControlCommand> parse_control_request(std::string_view line);
+
+/// {"ok":true} / {"ok":false,"error":"..."}, without a line feed.
+[[nodiscard]] std::string control_reply(const Status& status);
+/// {"ok":true,"state":"LOCALIZED",...}: every field of status_t under its name; map_id as text in hexadecimal, because
+/// JSON numbers lose the low bits of 64-bit integers.
+[[nodiscard]] std::string control_reply(const status_t& status);
+
+}  // namespace camloc

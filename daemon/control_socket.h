@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The local control socket: a UNIX stream socket whose file permissions (0660) say who may control the daemon. One
+// request line, one reply line, then the connection is closed. Everything is non-blocking and bounded: a client that is
+// slow, silent or noisy loses its connection, never the daemon's time.
+#pragma once
+
+#include <poll.h>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "core/base/result.h"
+#include "daemon/control_protocol.h"
+#include "core/base/unique_fd.h"
+
+namespace camloc {
+
+/// Gives the reply line, without its line feed.
+using ControlHandler = std::function<std::string(ControlCommand)>;
+
+/// Belongs to one thread.
+class ControlSocket {
+ public:
+  static constexpr int kMaxClients = 8;
+  static constexpr int kMaxPollFds = kMaxClients + 1;
+  static constexpr std::size_t kMaxRequest = 128;  ///< bytes of a line; more is refused
+  static constexpr std::int64_t kPatience_ns = 2'000'000'000;  ///< for a client to say all and read all
+
+  /// Owns `path` from now on, guarded by a lock on "path.lock", so that two daemons starting at once cannot both win. A
+  /// socket file that nobody listens on is replaced. Errors: kUnavailable (another daemon runs), kInvalid (the path is
+  /// something else, or too long), kIo.
+  static Result<std::unique_ptr<ControlSocket>> open(const std::string& path);
+  /// Removes the socket file.
+  ~ControlSocket();
+  ControlSocket(const ControlSocket&) = delete;
+  ControlSocket& operator=(const ControlSocket&) = delete;
+
+  /// Fills in what to wait for; the number of entries used. `fds` must hold kMaxPollFds.
+  [[nodiscard]] int prepare_poll(std::span<pollfd> fds);
+  /// Accepts, reads, answers and writes whatever the entries of prepare_poll() became ready for.
+  void handle(std::span<const pollfd> fds, std::int64_t now_ns, const ControlHandler& handler);
+  /// Drops the clients that took too long.
+  void expire(std::int64_t now_ns);
+
+ private:
+  struct Client {
+    UniqueFd fd;
+    std::array<char, kMaxRequest> request{};
+    std::size_t num_read = 0;
+    std::string reply;  // empty until the request is complete
+    std::size_t num_written = 0;
+    std::int64_t deadline_ns = 0;
+  };
+
+  ControlSocket(std::string path, UniqueFd lock, UniqueFd listener);
+  void accept_clients(std::int64_t now_ns);
+  void serve(Client& client, const ControlHandler& handler);
+  [[nodiscard]] bool read_request(Client& client, const ControlHandler& handler);
+  void write_reply(Client& client);
+  static void close_client(Client& client);
+
+  std::string path_;
+  UniqueFd lock_, listener_;
+  std::array<Client, kMaxClients> clients_;
+};
+
+}  // namespace camloc

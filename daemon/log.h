@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Log lines on stderr. Under systemd each carries its priority as "<6>" so that journald can sort them; elsewhere the
+// level is spelled out. The daemon logs changes of state, not frames, and a token bucket holds back what would flood.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace camloc {
+
+/// Values are syslog priorities.
+enum class LogLevel : std::uint8_t { kError = 3, kWarning = 4, kInfo = 6, kDebug = 7 };
+
+/// Belongs to one thread. Allocates nothing: longer lines are cut at 1023 bytes, line breaks become spaces.
+class Log {
+ public:
+  explicit Log(LogLevel level, int fd = 2);
+  /// `use_priority_prefix` instead of asking JOURNAL_STREAM.
+  Log(LogLevel level, int fd, bool use_priority_prefix);
+
+  void set_level(LogLevel level) { level_ = level; }
+  [[gnu::format(printf, 2, 3)]] void error(const char* format, ...);
+  [[gnu::format(printf, 2, 3)]] void warning(const char* format, ...);
+  [[gnu::format(printf, 2, 3)]] void info(const char* format, ...);
+  [[gnu::format(printf, 2, 3)]] void debug(const char* format, ...);
+  [[nodiscard]] std::uint64_t num_suppressed() const { return num_suppressed_total_; }
+
+ private:
+  void write(LogLevel level, const char* format, __builtin_va_list arguments);
+  bool take_token();
+  void write_line(LogLevel level, const char* text);
+
+  LogLevel level_;
+  int fd_;
+  bool use_priority_prefix_;
+  double tokens_;
+  std::int64_t refilled_ns_;
+  std::uint64_t num_suppressed_ = 0, num_suppressed_total_ = 0;
+};
+
+/// Lets a repeated complaint (a retry every second) through once, and again when it changes.
+class RepeatFilter {
+ public:
+  [[nodiscard]] bool is_new(const std::string& text) {
+    if (text == last_) return false;
+    last_ = text;
+    return true;
+  }
+  void clear() { last_.clear(); }
+  [[nodiscard]] const std::string& last() const { return last_; }
+
+ private:
+  std::string last_;
+};
+
+}  // namespace camloc

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Options for the parts, and checks across settings.
+#include "daemon/service_setup.h"
+
+#include <algorithm>
+#include <array>
+
+#include "daemon/clock.h"
+#include "drivers/camera_file.h"
+
+namespace camloc {
+namespace {
+
+std::string scheme_of(const std::string& url) {
+  const std::size_t end = url.find("://");
+  return end == std::string::npos ? "replay" : url.substr(0, end);
+}
+
+std::string size_text(int width, int height) { return std::to_string(width) + " x " + std::to_string(height); }
+
+Status check_size(const std::string& what, int source_width, int source_height, const Intrinsics& camera, const Config& config) {
+  if (source_width == 0 || (source_width == camera.width && source_height == camera.height)) return Status::ok();
+  const std::string calibration = config.source_camera.empty() ? "the source's own calibration" : config.source_camera;
+  return {ErrorCode::kInvalid, config.source_url + " delivers " + what + " images of " + size_text(source_width, source_height) + " but " +
+                                   calibration + " is for " + size_text(camera.width, camera.height) + "; set source.camera to its calibration"};
+}
+
+}  // namespace
+
+CaptureOptions capture_options(const Config& config) {
+  CaptureOptions options;
+  options.url = config.source_url;
+  options.wait_for_reader = config.source_lossless;
+  options.retry = std::chrono::milliseconds(config.source_retry_ms);
+  return options;
+}
+
+MapSlotOptions map_slot_options(const Config& config) {
+  MapSlotOptions options;
+  options.path = config.map_path;
+  options.needs_datum = config.publish_frame == "wcs";
+  options.localizer.orb.num_features = static_cast<int>(config.localize_features);
+  options.localizer.use_tracking = config.localize_tracking;
+  options.localizer.use_depth = config.localize_depth;
+  options.localizer.max_coast_ns = config.localize_max_coast_ms * 1'000'000;
+  options.localizer.now_ns = monotonic_ns;
+  return options;
+}
+
+PublishOptions publish_options(const Config& config) {
+  return {config.publish_lcm_url, config.publish_pose_channel, config.publish_status_channel, config.publish_bot_core_channel};
+}
+
+Status check_settings(const Config& config) {
+  if (config.publish_lcm_url.find("://") == std::string::npos) {
+    return {ErrorCode::kInvalid, "publish.lcm_url: '" + config.publish_lcm_url + "' has no provider; e.g. udpm://239.255.76.67:7667?ttl=0"};
+  }
+  if (config.source_url.empty()) return Status::ok();
+  const std::string scheme = scheme_of(config.source_url);
+  std::string known;
+  for (const FrameSourceScheme& candidate : frame_source_schemes()) {
+    const std::string name = candidate.scheme.substr(0, candidate.scheme.find(':'));
+    if (name == scheme) return Status::ok();
+    known += (known.empty() ? "" : ", ") + name;
+  }
+  return {ErrorCode::kInvalid, "source.url: this build knows no '" + scheme.substr(0, 40) + "' source; it knows " + known};
+}
+
+Result<std::optional<RgbdCamera>> read_configured_camera(const Config& config) {
+  if (config.source_camera.empty()) return std::optional<RgbdCamera>();
+  Result<RgbdCamera> camera = read_camera_file(config.source_camera);
+  if (!camera) return camera.status().with_context("source.camera");
+  return std::optional<RgbdCamera>(std::move(camera).value());
+}
+
+Result<RgbdCamera> match_camera(const Config& config, const std::optional<RgbdCamera>& configured, const FrameSourceInfo& source) {
+  const std::optional<RgbdCamera>& camera = configured ? configured : source.camera;
+  if (!camera) return Status(ErrorCode::kInvalid, config.source_url + " does not know its calibration; set source.camera to its calibration file");
+  if (const Status status = check_size("colour", source.color_width, source.color_height, camera->color, config); !status) return status;
+  const Intrinsics& depth = camera->is_depth_registered ? camera->color : camera->depth;
+  if (const Status status = check_size("depth", source.depth_width, source.depth_height, depth, config); !status) return status;
+  return *camera;
+}
+
+Status check_config(const Config& config) {
+  if (const Status status = check_settings(config); !status) return status;
+  const Result<std::optional<RgbdCamera>> camera = read_configured_camera(config);
+  if (!camera) return camera.status();
+  constexpr std::array kRecordings = {"replay", "sample"};
+  const bool is_recording = std::find(kRecordings.begin(), kRecordings.end(), scheme_of(config.source_url)) != kRecordings.end();
+  if (config.source_url.empty() || !is_recording) return Status::ok();
+  const Result<std::unique_ptr<FrameSource>> source = open_frame_source(config.source_url);
+  if (!source) return source.status().with_context("source.url");
+  return match_camera(config, *camera, (*source)->info()).status();
+}
+
+std::string changes_that_need_restart(const Config& from, const Config& to) {
+  std::string out;
+  for (const Setting& setting : settings()) {
+    if (setting.is_reloadable || value_of(setting, from) == value_of(setting, to)) continue;
+    out += (out.empty() ? "" : ", ") + setting.name();
+  }
+  return out;
+}
+
+}  // namespace camloc

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The record behind status_t.
+#include "daemon/status_board.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstring>
+
+namespace camloc {
+namespace {
+
+constexpr std::size_t kMaxStateText = 255;
+
+/// Resident memory from an open /proc/self/statm, 0 when it cannot be read.
+std::int64_t resident_bytes(int statm_fd) {
+  std::array<char, 128> text{};
+  if (::pread(statm_fd, text.data(), text.size() - 1, 0) <= 0) return 0;
+  long long total = 0, resident = 0;
+  if (std::sscanf(text.data(), "%lld %lld", &total, &resident) != 2) return 0;
+  return resident * ::sysconf(_SC_PAGESIZE);
+}
+
+}  // namespace
+
+StatusBoard::StatusBoard(const std::string& source, const std::string& map_path, std::int64_t now_ns)
+    : status_(), latency_(now_ns), memory_fd_(::open("/proc/self/statm", O_RDONLY | O_CLOEXEC)), started_ns_(now_ns) {
+  status_.source = source;
+  status_.map_path = map_path;
+  status_.state_text.reserve(kMaxStateText);
+  status_.focal_scale = 1;
+}
+
+void StatusBoard::add_frame(const Localization& localization, std::int64_t latency_ns) {
+  latency_.add(latency_ns);
+  if (localization.state == State::kLocalized) ++status_.frames_localized;
+}
+
+bool StatusBoard::set_state(State state, const char* text) {
+  const bool is_other = state != this->state();
+  status_.state = static_cast<std::int8_t>(state);
+  status_.state_text.assign(text, std::min(std::strlen(text), kMaxStateText));
+  return is_other;
+}
+
+void StatusBoard::set_map(const std::string& path, std::uint64_t map_id) {
+  status_.map_path = path;
+  status_.map_id = static_cast<std::int64_t>(map_id);
+}
+
+void StatusBoard::set_calibration(const CalibrationHealth& health) {
+  status_.is_calibration_suspect = health.is_suspect ? 1 : 0;
+  status_.focal_scale = health.focal_scale;
+}
+
+void StatusBoard::close_window(std::int64_t now_ns) {
+  const LatencyWindow::Summary summary = latency_.summarize(now_ns);
+  status_.frame_rate_hz = summary.rate_hz;
+  status_.latency_p50_ms = summary.p50_ms;
+  status_.latency_max_ms = summary.max_ms;
+  status_.rss_bytes = resident_bytes(memory_fd_.get());
+}
+
+void StatusBoard::stamp(std::int64_t now_ns, std::int64_t now_epoch_ns) {
+  status_.utime = now_epoch_ns / 1000;
+  status_.uptime_us = (now_ns - started_ns_) / 1000;
+}
+
+}  // namespace camloc
