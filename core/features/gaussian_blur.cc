@@ -2,16 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/features/gaussian_blur.h"
 
-#include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstring>
 
 namespace camloc {
 namespace {
 
 constexpr int kRadius = 3;
-/// exp(-x^2 / (2 sigma^2)) with sigma 2 in 256ths, rounded with error diffusion so that the seven add up to 256.
-constexpr std::uint32_t kWeights[7] = {18, 33, 49, 56, 49, 33, 18};
+/// exp(-x^2 / (2 sigma^2)) with sigma 2 for x = 0..3, normalized.
+constexpr float kWeights[4] = {0.21610594100794114F, 0.19071282356963737F, 0.131074878967366F, 0.07015932695902607F};
+
+/// Weighted sum of the centre and of the three pairs beside it. One order of operations for all kernels.
+float weighted(float centre, float pair1, float pair2, float pair3) {
+  return (centre * kWeights[0] + pair1 * kWeights[1]) + (pair2 * kWeights[2] + pair3 * kWeights[3]);
+}
 
 /// Index of the pixel that stands for index `i` of a row of n: ... 2 1 | 0 1 2 ... n-1 | n-2 ...
 int mirrored_index(int i, int n) {
@@ -28,7 +33,7 @@ GaussianBlur::GaussianBlur(int max_width)
   ring_.resize(8 * ring_stride_);
 }
 
-void GaussianBlur::blur_row(const PaddedImage& src, int y, std::uint16_t* out) {
+void GaussianBlur::blur_row(const PaddedImage& src, int y, float* out) {
   const std::uint8_t* row = src.row(y);
   for (int i = 1; i <= kRadius; ++i) {
     mirrored_[static_cast<std::size_t>(kRadius - i)] = row[mirrored_index(-i, src.width)];
@@ -37,8 +42,8 @@ void GaussianBlur::blur_row(const PaddedImage& src, int y, std::uint16_t* out) {
   std::memcpy(mirrored_.data() + kRadius, row, static_cast<std::size_t>(src.width));
   const std::uint8_t* p = mirrored_.data();
   for (int x = 0; x < src.width; ++x)
-    out[x] = static_cast<std::uint16_t>((p[x] + p[x + 6]) * kWeights[0] + (p[x + 1] + p[x + 5]) * kWeights[1] +
-                                        (p[x + 2] + p[x + 4]) * kWeights[2] + p[x + 3] * kWeights[3]);
+    out[x] = weighted(p[x + 3], static_cast<float>(p[x + 2] + p[x + 4]), static_cast<float>(p[x + 1] + p[x + 5]),
+                      static_cast<float>(p[x] + p[x + 6]));
 }
 
 void GaussianBlur::apply(const PaddedImage& src, int first_row, int last_row, PaddedImage* dst) {
@@ -49,13 +54,12 @@ void GaussianBlur::apply(const PaddedImage& src, int first_row, int last_row, Pa
     blur_row(src, mirrored_index(y, src.height), ring_row(y));
   for (int y = first_row; y < last_row; ++y) {
     blur_row(src, mirrored_index(y + kRadius, src.height), ring_row(y + kRadius));
-    const std::uint16_t* rows[7];
+    const float* rows[7];
     for (int k = 0; k < 7; ++k) rows[k] = ring_row(y - kRadius + k);
     std::uint8_t* out = dst->row(y);
     for (int x = 0; x < src.width; ++x) {
-      std::uint32_t sum = 32768;
-      for (int k = 0; k < 7; ++k) sum += rows[k][x] * kWeights[k];
-      out[x] = static_cast<std::uint8_t>(sum >> 16);
+      const float sum = weighted(rows[3][x], rows[2][x] + rows[4][x], rows[1][x] + rows[5][x], rows[0][x] + rows[6][x]);
+      out[x] = static_cast<std::uint8_t>(std::lrint(sum));
     }
   }
 }
