@@ -1,0 +1,140 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+
+#include <array>
+#include <thread>
+
+#include "core/base/unique_fd.h"
+#include "tests/tools/command_runner.h"
+#include "tools/camloc/commands.h"
+#include "tools/camloc/control_client.h"
+
+namespace camloc::tools {
+namespace {
+
+/// Answers one connection with a fixed text, after reading one line. An empty answer keeps the client waiting.
+class FakeDaemon {
+ public:
+  FakeDaemon(const std::string& path, std::string answer) : answer_(std::move(answer)) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.copy(address.sun_path, sizeof(address.sun_path) - 1);
+    listener_.reset(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    EXPECT_EQ(::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)), 0);
+    EXPECT_EQ(::listen(listener_.get(), 1), 0);
+    thread_ = std::thread([this] { serve(); });
+  }
+  ~FakeDaemon() { stop(); }
+  FakeDaemon(const FakeDaemon&) = delete;
+  FakeDaemon& operator=(const FakeDaemon&) = delete;
+
+  /// What the client asked.
+  std::string stop() {
+    if (thread_.joinable()) thread_.join();
+    return request_;
+  }
+
+ private:
+  void serve() {
+    pollfd waiting{listener_.get(), POLLIN, 0};
+    if (::poll(&waiting, 1, 5000) != 1) return;
+    const UniqueFd client(::accept(listener_.get(), nullptr, nullptr));
+    std::array<char, 256> bytes{};
+    while (request_.find('\n') == std::string::npos) {
+      const ssize_t count = ::recv(client.get(), bytes.data(), bytes.size(), 0);
+      if (count <= 0) return;
+      request_.append(bytes.data(), static_cast<std::size_t>(count));
+    }
+    // In two pieces: a stream has no message boundaries.
+    const std::size_t half = answer_.size() / 2;
+    ::send(client.get(), answer_.data(), half, MSG_NOSIGNAL);
+    ::send(client.get(), answer_.data() + half, answer_.size() - half, MSG_NOSIGNAL);
+    if (answer_.empty()) ::recv(client.get(), bytes.data(), bytes.size(), 0);
+  }
+
+  std::string answer_, request_;
+  UniqueFd listener_;
+  std::thread thread_;
+};
+
+class CtlTest : public ::testing::Test {
+ protected:
+  [[nodiscard]] CommandOutput ctl(std::vector<std::string> options) const {
+    options.insert(options.begin(), "ctl");
+    options.insert(options.end(), {"--socket", socket_path_});
+    return run_command(add_ctl_command, options);
+  }
+
+  TemporaryFolder folder_;
+  std::string socket_path_ = folder_ / "control.sock";
+};
+
+TEST_F(CtlTest, StatusIsATable) {
+  FakeDaemon daemon(socket_path_, "{\"ok\":true,\"state\":\"LOCALIZED\",\"frame_rate_hz\":29.9,\"map\":{\"id\":\"ab\"}}\n");
+  const CommandOutput output = ctl({"status"});
+  EXPECT_EQ(output.exit_code, 0) << output.err;
+  EXPECT_EQ(daemon.stop(), "status\n");
+  EXPECT_NE(output.out.find("state                      LOCALIZED\n"), std::string::npos) << output.out;
+  EXPECT_NE(output.out.find("map.id                     ab\n"), std::string::npos) << output.out;
+  EXPECT_EQ(output.out.find("ok "), std::string::npos) << output.out;
+}
+
+TEST_F(CtlTest, JsonIsTheAnswer) {
+  FakeDaemon daemon(socket_path_, "{\"ok\":true,\"state\":\"LOST\"}");  // the stream ends without a line feed
+  const CommandOutput output = ctl({"status", "--json"});
+  EXPECT_EQ(output.exit_code, 0) << output.err;
+  EXPECT_EQ(nlohmann::json::parse(output.out)["state"], "LOST");
+}
+
+TEST_F(CtlTest, ARefusedReloadIsAFailureWithTheReason) {
+  FakeDaemon daemon(socket_path_, "{\"ok\":false,\"error\":\"b.cmap: checksum\"}\n");
+  const CommandOutput output = ctl({"reload"});
+  EXPECT_EQ(output.exit_code, 1);
+  EXPECT_EQ(daemon.stop(), "reload\n");
+  EXPECT_EQ(output.err, "camloc: reload refused: b.cmap: checksum\n");
+}
+
+TEST_F(CtlTest, ResetIsDone) {
+  FakeDaemon daemon(socket_path_, "{\"ok\":true}\n");
+  const CommandOutput output = ctl({"reset"});
+  EXPECT_EQ(output.exit_code, 0);
+  EXPECT_EQ(output.out, "reset: done\n");
+}
+
+TEST_F(CtlTest, NoDaemonIsOneClearLine) {
+  const CommandOutput output = ctl({"status"});
+  EXPECT_EQ(output.exit_code, 1);
+  EXPECT_NE(output.err.find("no camlocd listens on " + socket_path_), std::string::npos) << output.err;
+  EXPECT_EQ(std::count(output.err.begin(), output.err.end(), '\n'), 1);
+}
+
+TEST_F(CtlTest, SilenceTimesOut) {
+  FakeDaemon daemon(socket_path_, "");
+  const CommandOutput output = ctl({"status", "--timeout-ms", "100"});
+  EXPECT_EQ(output.exit_code, 1);
+  EXPECT_NE(output.err.find("did not answer"), std::string::npos) << output.err;
+}
+
+TEST_F(CtlTest, WhatIsNoJsonObjectIsRefused) {
+  for (const char* answer : {"hello\n", "[1,2]\n", "\n", "{\"ok\":\n"}) {
+    const std::string path = folder_ / "other.sock";
+    FakeDaemon daemon(path, answer);
+    const auto result = control_request(path, "status", std::chrono::seconds(5));
+    ASSERT_FALSE(result.is_ok()) << answer;
+    EXPECT_EQ(result.status().code(), ErrorCode::kCorrupt) << answer;
+    daemon.stop();
+    std::filesystem::remove(path);
+  }
+}
+
+TEST_F(CtlTest, UsageErrors) {
+  EXPECT_EQ(ctl({"explode"}).exit_code, 2);
+  EXPECT_EQ(ctl({}).exit_code, 2);
+  EXPECT_EQ(run_command(add_ctl_command, {"ctl", "status", "--socket", std::string(200, 'x')}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace camloc::tools
