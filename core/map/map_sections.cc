@@ -211,7 +211,7 @@ Status check_inverted_file(const MapSections& map) {
 Status check_wcs(const MapSections& map) {
   if (map.wcs.empty()) return Status::ok();
   if (map.wcs.size() > 1) return corrupt("more than one world coordinate system");
-  if (!is_transform(map.wcs[0].T_wcs_map) || !all_finite(map.wcs[0].covariance)) return corrupt("world coordinate system not finite");
+  if (!is_transform(map.wcs[0].T_wcs_map) || !all_finite(map.wcs[0].covariance)) return corrupt("wcs datum not finite");
   return Status::ok();
 }
 
