@@ -42,15 +42,19 @@ std::span<const Corner> CornerSelector::select(const PaddedImage& level, int cou
   selected_.clear();
   lay_out_cells(level);
   if (cells_.empty() || count <= 0) return selected_;
-  for (const Cell& cell : cells_) score(level, cell, options_.threshold);
-  for (Cell& cell : cells_) collect(&cell);
+  const int border = options_.border_px;
+  score(level, border, border, level.width - border, level.height - border, options_.threshold);
+  collect(border, border, level.width - border, level.height - border);
   if (options_.min_threshold < options_.threshold) {
     // All empty cells are scored before any is searched, so that the result does not depend on their order.
+    for (Cell& cell : cells_) {
+      cell.is_weak = cell.count == 0;
+      if (cell.is_weak) score(level, cell.x0, cell.y0, cell.x1, cell.y1, options_.min_threshold);
+    }
     for (const Cell& cell : cells_)
-      if (cell.count == 0) score(level, cell, options_.min_threshold);
-    for (Cell& cell : cells_)
-      if (cell.count == 0) collect(&cell);
+      if (cell.is_weak) collect(cell.x0, cell.y0, cell.x1, cell.y1);
   }
+  for (Cell& cell : cells_) std::sort(cell.corners, cell.corners + cell.count, is_stronger);
   take_evenly(count);
   return selected_;
 }
@@ -60,9 +64,10 @@ void CornerSelector::lay_out_cells(const PaddedImage& level) {
   const int border = options_.border_px, side = options_.cell_px;
   if (level.width <= 2 * border || level.height <= 2 * border) return;
   Corner* corners = corner_of_cell_.data();
+  columns_ = (level.width - 2 * border + side - 1) / side;
   for (int y = border; y < level.height - border; y += side)
     for (int x = border; x < level.width - border; x += side, corners += kMaxPerCell)
-      cells_.push_back({x, y, std::min(x + side, level.width - border), std::min(y + side, level.height - border), corners, 0});
+      cells_.push_back({x, y, std::min(x + side, level.width - border), std::min(y + side, level.height - border), corners, 0, false});
   // A frame of zero scores around the searched area.
   const auto searched_width = static_cast<std::size_t>(level.width - 2 * border + 2);
   std::memset(scores_.row(border - 1) + border - 1, 0, searched_width);
@@ -70,19 +75,25 @@ void CornerSelector::lay_out_cells(const PaddedImage& level) {
   for (int y = border; y < level.height - border; ++y) scores_.row(y)[border - 1] = scores_.row(y)[level.width - border] = 0;
 }
 
-void CornerSelector::score(const PaddedImage& level, const Cell& cell, int threshold) {
-  for (int y = cell.y0; y < cell.y1; ++y)
-    fast_scores_(level.row(y) + cell.x0, level.stride, cell.x1 - cell.x0, threshold, scores_.row(y) + cell.x0);
+void CornerSelector::score(const PaddedImage& level, int x0, int y0, int x1, int y1, int threshold) {
+  for (int y = y0; y < y1; ++y) fast_scores_(level.row(y) + x0, level.stride, x1 - x0, threshold, scores_.row(y) + x0);
 }
 
-void CornerSelector::collect(Cell* cell) {
-  for (int y = cell->y0; y < cell->y1; ++y) {
+void CornerSelector::collect(int x0, int y0, int x1, int y1) {
+  const int border = options_.border_px, side = options_.cell_px;
+  for (int y = y0; y < y1; ++y) {
     const std::uint8_t* row = scores_.row(y);
-    for (int x = cell->x0; x < cell->x1; ++x)
-      if (row[x] != 0 && is_maximum(row + x, scores_.stride))
-        add(cell, {static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), row[x]});
+    Cell* cells = cells_.data() + static_cast<std::ptrdiff_t>((y - border) / side) * columns_;
+    for (int x = x0; x < x1; x += 8) {
+      // Most pixels are no corners: look at eight scores at once. Rows are padded.
+      std::uint64_t eight;
+      std::memcpy(&eight, row + x, sizeof(eight));
+      if (eight == 0) continue;
+      for (int i = x; i < std::min(x + 8, x1); ++i)
+        if (row[i] != 0 && is_maximum(row + i, scores_.stride))
+          add(&cells[(i - border) / side], {static_cast<std::int16_t>(i), static_cast<std::int16_t>(y), row[i]});
+    }
   }
-  std::sort(cell->corners, cell->corners + cell->count, is_stronger);
 }
 
 void CornerSelector::add(Cell* cell, Corner corner) {

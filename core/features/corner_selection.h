@@ -44,17 +44,19 @@ class CornerSelector {
     int x0, y0, x1, y1;   ///< pixels [x0, x1) x [y0, y1)
     Corner* corners;
     int count;
+    bool is_weak;         ///< had no corner at the first threshold
   };
   void lay_out_cells(const PaddedImage& level);
-  void score(const PaddedImage& level, const Cell& cell, int threshold);
-  void collect(Cell* cell);
+  void score(const PaddedImage& level, int x0, int y0, int x1, int y1, int threshold);
+  void collect(int x0, int y0, int x1, int y1);
   void add(Cell* cell, Corner corner);
   void take_evenly(int count);
 
   CornerOptions options_;
   FastScoresFunction fast_scores_;
   PaddedImage scores_;
-  std::vector<Cell> cells_;
+  std::vector<Cell> cells_;   ///< row by row
+  int columns_ = 0;           ///< of cells
   std::vector<Corner> corner_of_cell_;
   std::vector<Corner> selected_;
   std::uint64_t num_clipped_ = 0;

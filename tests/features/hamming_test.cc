@@ -130,7 +130,7 @@ TEST_P(HammingKernelTest, WorksBeyondSixteenBitPositions) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, HammingKernelTest, testing::ValuesIn(available_hamming_kernels()),
-                         [](const auto& info) { return std::string(to_string(info.param)); });
+                         [](const auto& kernel) { return std::string(to_string(kernel.param)); });
 
 }  // namespace
 }  // namespace camloc
