@@ -1,0 +1,183 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/camloc-sim/walk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tools/camloc-sim/furniture.h"
+#include "tools/camloc-sim/noise.h"
+
+namespace camloc::sim {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// Collects the points of a walk.
+class PathBuilder {
+ public:
+  PathBuilder(const FloorPlan& plan, double n) : plan_(plan), n_(n) {}
+
+  void corridor(int side, double s) { corridor(side, s, n_); }
+  void corridor(int side, double s, double n) { path_.push_back(plan_.sides[static_cast<std::size_t>(side)].place.point(s, n, 0).head<2>()); }
+  /// Round the corner from the end of `side` into the next one, or back with `is_reverse`.
+  void corner(int side) { corridor(side, plan_.sides[static_cast<std::size_t>(side)].length - n_); }
+  /// In by the door, a turn around the room, and out again. `shift` moves the turn sideways.
+  void office(std::size_t index, double shift, bool is_clockwise) {
+    const Office& office = plan_.offices[index];
+    const Placement place = office_place(plan_, office);
+    const double gap = -kWallThickness - (office.is_outer ? n_ : kCorridorWidth - n_);
+    const double right = office.width - 1.55;
+    std::vector<Eigen::Vector2d> turn = {{1.5, 1.5}, {1.55 + shift, 2.5}, {2.2, 3.2 + shift}, {right, 2.8}, {right, 1.9 + shift}, {2.3, 1.0}};
+    if (!is_clockwise) std::reverse(turn.begin(), turn.end());
+    const auto add = [&](double x, double y) { path_.push_back(place.point(x, y, 0).head<2>()); };
+    add(1.37, gap);
+    add(1.37, -0.1);
+    add(1.37, 0.6);
+    for (const Eigen::Vector2d& p : turn) add(p.x(), p.y());
+    add(1.40, 0.5);
+    add(1.37, -0.1);
+    add(1.37, gap);
+  }
+  [[nodiscard]] std::vector<Eigen::Vector2d> take() { return std::move(path_); }
+
+ private:
+  const FloorPlan& plan_;
+  double n_;
+  std::vector<Eigen::Vector2d> path_;
+};
+
+void turn_back(PathBuilder* path, int side, double s, double sign) {
+  path->corridor(side, s, 0.8);
+  path->corridor(side, s + sign * 0.5, 0.8);
+  path->corridor(side, s + sign * 0.6, 1.5);
+  path->corridor(side, s, 1.5);
+}
+
+std::vector<Eigen::Vector2d> mapping_path(const FloorPlan& plan) {
+  PathBuilder path(plan, 1.1);
+  path.corridor(0, 1.5);
+  for (const std::size_t office : {0U, 1U, 2U}) path.office(office, 0.0, office % 2 == 0);
+  path.corner(0);
+  for (const std::size_t office : {3U, 4U}) path.office(office, 0.0, office % 2 == 0);
+  path.corner(1);
+  for (const std::size_t office : {5U, 6U}) path.office(office, 0.0, office % 2 == 0);
+  path.corner(2);
+  for (const std::size_t office : {7U, 8U}) path.office(office, 0.0, office % 2 == 0);
+  path.corner(3);
+  turn_back(&path, 0, 8.0, 1.0);
+  path.corridor(0, 1.1);
+  path.corridor(3, 12.0);
+  return path.take();
+}
+
+std::vector<Eigen::Vector2d> other_day_path(const FloorPlan& plan) {
+  PathBuilder path(plan, 1.32);
+  path.corridor(3, 20.0);
+  path.corridor(3, 26.0, 0.9);
+  path.corner(3);
+  path.office(0, 0.15, false);
+  path.corridor(0, 15.0, 0.85);
+  path.corridor(0, 34.0);
+  path.office(2, 0.1, true);
+  path.corner(0);
+  path.corridor(1, 9.0, 0.85);
+  path.office(4, -0.1, true);
+  path.corner(1);
+  path.office(5, 0.1, true);
+  path.corridor(2, 15.0, 0.9);
+  path.office(6, -0.1, false);
+  path.corner(2);
+  path.office(7, 0.1, false);
+  path.corridor(3, 20.0);
+  path.corridor(3, 30.0, 0.9);
+  turn_back(&path, 3, 34.0, 1.0);
+  path.corridor(3, 28.0, 1.4);
+  path.corridor(3, 16.0, 0.95);
+  return path.take();
+}
+
+std::vector<Eigen::Vector2d> small_path(const FloorPlan& plan, std::uint32_t day) {
+  PathBuilder path(plan, day == 1 ? 1.1 : 1.3);
+  path.corridor(0, day == 1 ? 1.5 : 2.5);
+  path.office(0, day == 1 ? 0.0 : 0.12, day == 1);
+  path.corner(0);
+  path.office(1, day == 1 ? 0.0 : -0.1, day != 1);
+  path.corridor(1, day == 1 ? 6.8 : 6.2);
+  return path.take();
+}
+
+/// Time at which the trajectory comes nearest to a point.
+double nearest_time(const Trajectory& trajectory, const Eigen::Vector2d& point) {
+  double best_time = 0, best = 1e18;
+  for (double t = 0; t < trajectory.duration_s(); t += 0.1) {
+    const double squared = (trajectory.pose(t).translation.head<2>() - point).squaredNorm();
+    if (squared < best) {
+      best = squared;
+      best_time = t;
+    }
+  }
+  return best_time;
+}
+
+Passer passer(const FloorPlan& plan, const Trajectory& trajectory, int side, double s, double speed, double n, double around_s, std::uint32_t seed) {
+  const Eigen::Vector2d point = plan.sides[static_cast<std::size_t>(side)].place.point(s, 1.1, 0).head<2>();
+  const double time = nearest_time(trajectory, point);
+  return {side, s, time, speed, n, time - around_s, time + around_s, seed};
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector2d> walk_path(const FloorPlan& plan, SceneKind kind, std::uint32_t day) {
+  if (kind == SceneKind::kSmall) return small_path(plan, day);
+  return day == 1 ? mapping_path(plan) : other_day_path(plan);
+}
+
+WalkStyle walk_style(SceneKind kind, std::uint32_t day, std::uint32_t seed) {
+  WalkStyle style;
+  style.seed = hash32(seed, day, 900);
+  if (kind == SceneKind::kSmall) style.speed_m_s = 1.0;
+  if (day != 1) {
+    style.height_m = 1.53;
+    style.speed_m_s *= 0.95;
+    style.pitch_rad = -0.06;
+    style.look_rad = 0.30;
+  }
+  return style;
+}
+
+std::vector<Passer> plan_passers(const FloorPlan& plan, const Trajectory& trajectory, const SceneOptions& options) {
+  if (options.day == 1) return {};
+  const std::uint32_t seed = hash32(options.seed, options.day, 950);
+  std::vector<Passer> result;
+  if (options.kind == SceneKind::kSmall) {
+    result.push_back(passer(plan, trajectory, 0, 9.0, -0.7, 0.5, 8.0, seed));
+    result.push_back(passer(plan, trajectory, 1, 7.2, 0.0, 1.8, 1e6, seed + 1));
+    return result;
+  }
+  result.push_back(passer(plan, trajectory, 0, 18.0, -1.0, 0.4, 14.0, seed));           // comes towards the camera
+  result.push_back(passer(plan, trajectory, 1, 17.0, 0.95, 1.5, 12.0, seed + 1));       // walks ahead
+  result.back().meet_s += 2.5;
+  result.push_back(passer(plan, trajectory, 2, 20.0, -1.1, 0.4, 14.0, seed + 2));
+  result.push_back(passer(plan, trajectory, 2, 48.0, 0.0, 0.35, 1e6, seed + 3));        // stands at the wall
+  result.push_back(passer(plan, trajectory, 3, 12.0, -0.9, 1.85, 14.0, seed));
+  return result;
+}
+
+std::vector<Surface> people_at(const FloorPlan& plan, const Scene& scene, const std::vector<Passer>& passers, double time_s) {
+  Scene people;
+  for (const Passer& p : passers) {
+    if (time_s < p.from_time_s || time_s > p.to_time_s) continue;
+    const CorridorSide& side = plan.sides[static_cast<std::size_t>(p.side)];
+    const double s = p.meet_s + p.speed_m_s * (time_s - p.meet_time_s);
+    if (s < 0.5 || s > side.length - 0.5) continue;
+    const double stride = p.speed_m_s == 0 ? 0.0 : std::sin(2 * kPi * time_s * 0.9);
+    const double facing = p.speed_m_s == 0 ? kPi : (p.speed_m_s > 0 ? 0.5 * kPi : -0.5 * kPi);
+    add_person(&people, side.place.child(s, p.n, facing), p.seed, stride, 0);
+  }
+  for (Surface& surface : people.surfaces) scene.bake_light(&surface);
+  return std::move(people.surfaces);
+}
+
+}  // namespace camloc::sim
