@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Our own camera file. See camera_file.h, and config/cameras for examples.
-#define TOML_EXCEPTIONS 0
-#define TOML_HEADER_ONLY 1
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -33,7 +31,7 @@ class TableReader {
       if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
       std::string list;
       for (const std::string_view one : known) list += std::string(list.empty() ? "" : ", ") + std::string(one);
-      fail(key.source().begin.line, "unknown key " + quoted(key.str()) + " in " + where() + "; known: " + list);
+      fail(key.source().begin.line, "unknown key " + in_quotes(key.str()) + " in " + where() + "; known: " + list);
       return;
     }
   }
@@ -76,7 +74,7 @@ class TableReader {
     }
     std::string list;
     for (const std::string_view one : choices) list += std::string(list.empty() ? "" : ", ") + std::string(one);
-    fail(line_of(*table_.get(key)), std::string(key) + ": " + quoted(found) + ", expected one of " + list);
+    fail(line_of(*table_.get(key)), std::string(key) + ": " + in_quotes(found) + ", expected one of " + list);
   }
   /// Between `least` and `values.size()` numbers.
   template <std::size_t N>

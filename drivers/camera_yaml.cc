@@ -86,7 +86,7 @@ LensModel lens_of(const YAML::Node& node, const std::string& name) {
   for (const char* one : {"equidistant", "fisheye", "kannalabrandt8"}) {
     if (model == one) return LensModel::kEquidistant;
   }
-  fail(node, "lens model " + quoted(name) + " is not known");
+  fail(node, "lens model " + in_quotes(name) + " is not known");
 }
 
 std::string scalar_or(const YAML::Node& parent, const char* key, const std::string& fallback) {

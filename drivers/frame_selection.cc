@@ -21,7 +21,7 @@ struct Slice {
 };
 
 Status bad(std::string_view part, const std::string& why) {
-  return {ErrorCode::kInvalid, "frame selection " + quoted(part) + ": " + why};
+  return {ErrorCode::kInvalid, "frame selection " + in_quotes(part) + ": " + why};
 }
 
 /// One bound of a slice: nothing, or an integer.
@@ -29,7 +29,7 @@ Result<std::optional<std::int64_t>> parse_bound(std::string_view bound, std::str
   bound = trimmed(bound);
   if (bound.empty()) return std::optional<std::int64_t>();
   const std::optional<std::int64_t> value = parse_int(bound);
-  if (!value) return bad(part, quoted(bound) + " is not an integer; expected start:stop:step");
+  if (!value) return bad(part, in_quotes(bound) + " is not an integer; expected start:stop:step");
   return value;
 }
 

@@ -41,14 +41,14 @@ Result<std::vector<StampedFile>> read_image_list(const fs::path& folder, const c
     const std::size_t end = line.text.find_first_of(" \t,");
     const std::string_view stamp_text = line.text.substr(0, end);
     const std::optional<std::int64_t> stamp_ns = parse_seconds_ns(stamp_text);
-    if (!stamp_ns) return line_error(list_path, line.number, "stamp " + quoted(stamp_text) + " is not a time in seconds");
+    if (!stamp_ns) return line_error(list_path, line.number, "stamp " + in_quotes(stamp_text) + " is not a time in seconds");
     const std::size_t begin = end == std::string_view::npos ? end : line.text.find_first_not_of(" \t,", end);
     if (begin == std::string_view::npos) return line_error(list_path, line.number, "expected 'timestamp filename', the file name is missing");
     if (!files.empty() && *stamp_ns <= files.back().stamp_ns) {
-      return line_error(list_path, line.number, "stamp " + quoted(stamp_text) + " is not after the one above it; sort the file by time");
+      return line_error(list_path, line.number, "stamp " + in_quotes(stamp_text) + " is not after the one above it; sort the file by time");
     }
     const std::string_view file = line.text.substr(begin);
-    if (file.find('\0') != std::string_view::npos) return line_error(list_path, line.number, "bad file name " + quoted(file));
+    if (file.find('\0') != std::string_view::npos) return line_error(list_path, line.number, "bad file name " + in_quotes(file));
     const fs::path path = folder / fs::path(file);
     if (!is_file(path)) return line_error(list_path, line.number, "image " + path.string() + " does not exist");
     files.push_back({*stamp_ns, path.string()});

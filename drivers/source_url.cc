@@ -43,10 +43,10 @@ Status parse_options(std::string_view query, SourceUrl* url) {
     const std::size_t equals = pair.find('=');
     const std::string key(pair.substr(0, equals));
     if (equals == std::string_view::npos || key.empty()) {
-      return {ErrorCode::kInvalid, url->text + ": option " + quoted(pair) + " is not key=value"};
+      return {ErrorCode::kInvalid, url->text + ": option " + in_quotes(pair) + " is not key=value"};
     }
     if (!url->options.emplace(key, percent_decoded(pair.substr(equals + 1))).second) {
-      return {ErrorCode::kInvalid, url->text + ": option " + quoted(key) + " is given twice"};
+      return {ErrorCode::kInvalid, url->text + ": option " + in_quotes(key) + " is given twice"};
     }
   }
   return Status::ok();
@@ -81,7 +81,7 @@ Status SourceUrl::check_options(const std::vector<std::string>& known) const {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     std::string list;
     for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
-    return {ErrorCode::kInvalid, text + ": unknown option " + quoted(key) + "; " + scheme + ":// knows " + list};
+    return {ErrorCode::kInvalid, text + ": unknown option " + in_quotes(key) + "; " + scheme + ":// knows " + list};
   }
   return Status::ok();
 }

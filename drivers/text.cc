@@ -98,7 +98,7 @@ Status line_error(const std::string& path, int line, const std::string& what) {
   return {ErrorCode::kInvalid, path + ":" + std::to_string(line) + ": " + what};
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   constexpr std::size_t kMaxLength = 40;
   std::string result = "'";
   for (const char c : text.substr(0, kMaxLength)) result += static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;

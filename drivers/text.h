@@ -34,6 +34,6 @@ struct TextLine {
 /// "path:line: what".
 [[nodiscard]] Status line_error(const std::string& path, int line, const std::string& what);
 /// Text from outside, fit for a one-line message: quoted, cut at 40 characters, control characters replaced.
-[[nodiscard]] std::string quoted(std::string_view text);
+[[nodiscard]] std::string in_quotes(std::string_view text);
 
 }  // namespace camloc

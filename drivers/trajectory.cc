@@ -27,11 +27,11 @@ Result<StampedPose> parse_tum_line(const std::string& path, const TextLine& line
     return line_error(path, line.number, std::to_string(fields.size()) + " fields, expected 'timestamp tx ty tz qx qy qz qw'");
   }
   const std::optional<std::int64_t> stamp_ns = parse_seconds_ns(fields[0]);
-  if (!stamp_ns) return line_error(path, line.number, "stamp " + quoted(fields[0]) + " is not a time in seconds");
+  if (!stamp_ns) return line_error(path, line.number, "stamp " + in_quotes(fields[0]) + " is not a time in seconds");
   std::array<double, 7> v{};
   for (std::size_t i = 0; i < v.size(); ++i) {
     const std::optional<double> value = parse_double(fields[i + 1]);
-    if (!value || !std::isfinite(*value)) return line_error(path, line.number, quoted(fields[i + 1]) + " is not a number");
+    if (!value || !std::isfinite(*value)) return line_error(path, line.number, in_quotes(fields[i + 1]) + " is not a number");
     v[i] = *value;
   }
   Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
@@ -49,7 +49,7 @@ Result<std::optional<Rigid3>> read_pose_matrix(const std::string& path) {
   Eigen::Matrix4d matrix;
   for (int i = 0; i < 16; ++i) {
     const std::optional<double> value = parse_double(fields[static_cast<std::size_t>(i)]);
-    if (!value) return Status(ErrorCode::kInvalid, path + ": " + quoted(fields[static_cast<std::size_t>(i)]) + " is not a number");
+    if (!value) return Status(ErrorCode::kInvalid, path + ": " + in_quotes(fields[static_cast<std::size_t>(i)]) + " is not a number");
     matrix(i / 4, i % 4) = *value;
   }
   if (!matrix.allFinite()) return std::optional<Rigid3>();

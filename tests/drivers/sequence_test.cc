@@ -1,0 +1,111 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/sequence.h"
+
+#include "tests/drivers/test_folder.h"
+
+namespace camloc {
+namespace {
+
+void expect_error(const Result<Sequence>& result, ErrorCode code, const std::string& part) {
+  ASSERT_FALSE(result.is_ok());
+  EXPECT_EQ(result.status().code(), code) << result.status().message();
+  EXPECT_NE(result.status().message().find(part), std::string::npos) << result.status().message();
+}
+
+/// Image files are only looked for, not opened.
+void touch(const TestFolder& folder, std::initializer_list<const char*> names) {
+  for (const char* name : names) folder.write(name, "x");
+}
+
+TEST(Sequence, TumWithDepthByNearestStamp) {
+  const TestFolder folder;
+  touch(folder, {"rgb/1.jpg", "rgb/2.jpg", "rgb/3.jpg", "depth/1.png", "depth/2.png", "depth/3.png"});
+  folder.write("rgb.txt", "# color\n10.000 rgb/1.jpg\n10.033 rgb/2.jpg\n10.066 rgb/3.jpg\n");
+  folder.write("depth.txt", "9.999 depth/1.png\n10.012 depth/2.png\n10.030 depth/3.png\n");
+  const auto sequence = read_sequence(folder.path());
+  ASSERT_TRUE(sequence.is_ok()) << sequence.status().message();
+  EXPECT_EQ(sequence->layout, "tum");
+  ASSERT_EQ(sequence->frames.size(), 3U);
+  EXPECT_EQ(sequence->frames[1].index, 1U);
+  EXPECT_EQ(sequence->frames[1].stamp_ns, 10033000000);
+  EXPECT_EQ(sequence->frames[0].color_path, folder / "rgb/1.jpg");
+  EXPECT_EQ(sequence->frames[0].depth_path, folder / "depth/1.png");
+  EXPECT_EQ(sequence->frames[1].depth_path, folder / "depth/3.png");
+  EXPECT_EQ(sequence->frames[2].depth_path, "") << "36 ms off";
+}
+
+TEST(Sequence, DepthIsGivenOutOnce) {
+  const TestFolder folder;
+  touch(folder, {"a", "b", "d"});
+  folder.write("rgb.txt", "1.000 a\n1.010 b\n");
+  folder.write("depth.txt", "1.008 d\n");
+  const auto sequence = read_sequence(folder.path());
+  ASSERT_TRUE(sequence.is_ok());
+  EXPECT_EQ(sequence->frames[0].depth_path, "");
+  EXPECT_EQ(sequence->frames[1].depth_path, folder / "d");
+}
+
+TEST(Sequence, TumAsOthersWriteIt) {
+  const TestFolder folder;
+  touch(folder, {"a b.png", "c.png"});
+  folder.write("rgb.txt", "\xEF\xBB\xBF# windows\r\n1.0,a b.png\r\n\r\n2.0\tc.png  \r\n");
+  const auto sequence = read_sequence(folder.path());
+  ASSERT_TRUE(sequence.is_ok()) << sequence.status().message();
+  ASSERT_EQ(sequence->frames.size(), 2U);
+  EXPECT_EQ(sequence->frames[0].color_path, folder / "a b.png");
+  EXPECT_EQ(sequence->frames[1].color_path, folder / "c.png");
+  EXPECT_EQ(sequence->frames[1].depth_path, "") << "no depth.txt";
+}
+
+TEST(Sequence, BadListsNameFileAndLine) {
+  const TestFolder folder;
+  touch(folder, {"a", "b"});
+  const struct { const char* text; const char* part; } cases[] = {
+      {"# c\n2.0 a\n1.0 b\n", "rgb.txt:3: stamp '1.0' is not after"},
+      {"1.0 a\n1.0 b\n", "rgb.txt:2: stamp '1.0' is not after"},
+      {"1.0 a\n2.0 none.png\n", "none.png does not exist"},
+      {"1.0 a\n\nxyz b\n", "rgb.txt:3: stamp 'xyz'"},
+      {"1.0\n", "rgb.txt:1: expected"},
+      {"1305031102,175304 a\n", "rgb.txt:1: image"},
+      {"# nothing\n", "lists no image"},
+  };
+  for (const auto& one : cases) {
+    folder.write("rgb.txt", one.text);
+    expect_error(read_sequence(folder.path()), ErrorCode::kInvalid, one.part);
+  }
+  folder.write("rgb.txt", "1.0 a\n");
+  folder.write("depth.txt", "1.0 none.png\n");
+  expect_error(read_sequence(folder.path()), ErrorCode::kInvalid, "depth.txt:1: image");
+}
+
+TEST(Sequence, NotASequence) {
+  const TestFolder folder;
+  expect_error(read_sequence(folder.path()), ErrorCode::kInvalid, "not a sequence");
+  expect_error(read_sequence(folder / "none"), ErrorCode::kNotFound, "no such folder");
+  expect_error(read_sequence(folder.write("file", "x")), ErrorCode::kInvalid, "not a folder");
+}
+
+TEST(Sequence, SevenScenesInOrderOfNumbers) {
+  const TestFolder folder;
+  touch(folder, {"frame-000003.color.png", "frame-000000.color.jpg", "frame-000012.color.jpeg", "frame-000003.depth.png", "frame-x.color.png", "notes.txt"});
+  const auto sequence = read_sequence(folder.path());
+  ASSERT_TRUE(sequence.is_ok()) << sequence.status().message();
+  EXPECT_EQ(sequence->layout, "7scenes");
+  ASSERT_EQ(sequence->frames.size(), 3U);
+  EXPECT_EQ(sequence->frames[1].index, 1U);
+  EXPECT_EQ(sequence->frames[1].stamp_ns, 100000000);
+  EXPECT_EQ(sequence->frames[1].depth_path, folder / "frame-000003.depth.png");
+  EXPECT_EQ(sequence->frames[2].stamp_ns, 400000000);
+  EXPECT_EQ(sequence->frames[2].depth_path, "");
+  EXPECT_EQ(read_sequence(folder.path(), 0.02, 10)->frames[1].stamp_ns, 300000000);
+}
+
+TEST(Sequence, SevenScenesTwiceTheSameFrame) {
+  const TestFolder folder;
+  touch(folder, {"frame-000003.color.png", "frame-000003.color.jpg"});
+  expect_error(read_sequence(folder.path()), ErrorCode::kInvalid, "same frame");
+}
+
+}  // namespace
+}  // namespace camloc

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/source_url.h"
+
+#include <gtest/gtest.h>
+
+namespace camloc {
+namespace {
+
+SourceUrl parse(const std::string& text) {
+  auto url = parse_source_url(text);
+  EXPECT_TRUE(url.is_ok()) << url.status().message();
+  return url ? *url : SourceUrl{};
+}
+
+TEST(SourceUrl, PartsOfAUrl) {
+  const SourceUrl url = parse("Replay:///data/kitchen?speed=1&frames=0:300:2,-1");
+  EXPECT_EQ(url.scheme, "replay");
+  EXPECT_EQ(url.path, "/data/kitchen");
+  EXPECT_EQ(url.text_option("frames", ""), "0:300:2,-1");
+  EXPECT_EQ(url.text_option("exclude", "none"), "none");
+}
+
+TEST(SourceUrl, RelativeAndEscapedPaths) {
+  EXPECT_EQ(parse("replay://data/x").path, "data/x");
+  EXPECT_EQ(parse("replay://my%20data/a b?loop=1").path, "my data/a b");
+  EXPECT_EQ(parse("replay://100%/%zz/%4").path, "100%/%zz/%4");
+  EXPECT_EQ(parse("replay://what%3f").path, "what?");
+  EXPECT_EQ(parse("replay://x%00y").path, "x%00y") << "a zero byte would cut the path";
+}
+
+TEST(SourceUrl, BarePathMeansReplay) {
+  const SourceUrl url = parse("../data/100%20?speed=2");
+  EXPECT_EQ(url.scheme, "replay");
+  EXPECT_EQ(url.path, "../data/100%20");
+  EXPECT_EQ(url.text_option("speed", ""), "2");
+  EXPECT_EQ(parse("sample://").path, "");
+  EXPECT_EQ(parse("./odd dir/a://b").scheme, "replay");
+}
+
+TEST(SourceUrl, BadOptions) {
+  EXPECT_NE(parse_source_url("sample://?frames").status().message().find("'frames'"), std::string::npos);
+  EXPECT_FALSE(parse_source_url("sample://?=3").is_ok());
+  EXPECT_FALSE(parse_source_url("sample://?a=1&a=2").is_ok());
+}
+
+TEST(SourceUrl, NumbersHaveARange) {
+  const SourceUrl url = parse("sample://?a=2.5&b=x&c=11&d=nan&e=");
+  EXPECT_EQ(*url.number_option("a", 1, 0, 10), 2.5);
+  EXPECT_EQ(*url.number_option("none", 1, 0, 10), 1.0);
+  for (const char* key : {"b", "c", "d", "e"}) {
+    const auto value = url.number_option(key, 1, 0, 10);
+    ASSERT_FALSE(value.is_ok()) << key;
+    EXPECT_NE(value.status().message().find("from 0 to 10"), std::string::npos);
+  }
+}
+
+TEST(SourceUrl, UnknownOptionsListTheKnown) {
+  const Status status = parse("sample://?sped=1").check_options({"speed", "loop"});
+  ASSERT_FALSE(status.is_ok());
+  EXPECT_NE(status.message().find("'sped'"), std::string::npos);
+  EXPECT_NE(status.message().find("speed, loop"), std::string::npos);
+  EXPECT_TRUE(parse("sample://?speed=1").check_options({"speed", "loop"}).is_ok());
+}
+
+}  // namespace
+}  // namespace camloc

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/text.h"
+
+#include <gtest/gtest.h>
+
+namespace camloc {
+namespace {
+
+TEST(Text, ContentLinesSkipCommentsAndKeepNumbers) {
+  const auto lines = content_lines("\xEF\xBB\xBF# head\r\n\r\n  one two \r\n#no\nlast");
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0].text, "one two");
+  EXPECT_EQ(lines[0].number, 3);
+  EXPECT_EQ(lines[1].text, "last");
+  EXPECT_EQ(lines[1].number, 5);
+}
+
+TEST(Text, FieldsBetweenRunsOfSeparators) {
+  EXPECT_EQ(split_fields("a  b,\tc "), (std::vector<std::string_view>{"a", "b", "c"}));
+  EXPECT_TRUE(split_fields(" , ").empty());
+}
+
+TEST(Text, NumbersAreTheWholeText) {
+  EXPECT_EQ(parse_double("-1.5e2"), -150.0);
+  EXPECT_EQ(parse_double("+2"), 2.0);
+  for (const char* bad : {"", "1.0x", " 1", "0x10", "+-1", "1,5"}) EXPECT_FALSE(parse_double(bad)) << bad;
+  EXPECT_EQ(parse_int("-12"), -12);
+  for (const char* bad : {"", "1.0", "99999999999999999999"}) EXPECT_FALSE(parse_int(bad)) << bad;
+}
+
+TEST(Text, SecondsKeepEveryNanosecond) {
+  EXPECT_EQ(parse_seconds_ns("1305031229.528748"), 1305031229528748000);
+  EXPECT_EQ(parse_seconds_ns("1305031229.123456789"), 1305031229123456789);
+  EXPECT_EQ(parse_seconds_ns("1305031229.1234567891"), 1305031229123456789);
+  EXPECT_EQ(parse_seconds_ns("-0.5"), -500000000);
+  EXPECT_EQ(parse_seconds_ns(".25"), 250000000);
+  EXPECT_EQ(parse_seconds_ns("7"), 7000000000);
+  EXPECT_EQ(parse_seconds_ns("1.305e+09"), 1305000000000000000);
+}
+
+TEST(Text, StampsThatAreNotSeconds) {
+  for (const char* bad : {"", ".", "-", "1403636579763555584", "1e30", "nan", "inf", "nane", "1.2.3", "1:30", "12,5", "--1"}) {
+    EXPECT_FALSE(parse_seconds_ns(bad)) << bad;
+  }
+}
+
+TEST(Text, MessagesStayOnOneLine) {
+  EXPECT_EQ(in_quotes("a\nb"), "'a?b'");
+  EXPECT_LT(in_quotes(std::string(500, 'x')).size(), 60U);
+  EXPECT_EQ(line_error("file.txt", 3, "bad").message(), "file.txt:3: bad");
+}
+
+}  // namespace
+}  // namespace camloc
