@@ -20,6 +20,13 @@ constexpr std::uint16_t kNoDistance = 257;
 constexpr std::int32_t kNotComputed = -2;
 constexpr double kTwoPi = 2 * std::numbers::pi;
 
+/// Smallest of the distances. Signed, because baseline x86-64 has a vector minimum for signed 16-bit numbers only.
+std::uint16_t smallest(const std::uint16_t* distances, std::size_t count) {
+  std::int16_t minimum = kNoDistance;
+  for (std::size_t i = 0; i < count; ++i) minimum = std::min(minimum, static_cast<std::int16_t>(distances[i]));
+  return static_cast<std::uint16_t>(minimum);
+}
+
 /// Angle in [0, 2 pi); anything that is not finite gives 0.
 double wrapped(double angle_rad) {
   const double turns = angle_rad / kTwoPi;
@@ -81,6 +88,7 @@ std::span<const Match> CandidateMatcher::match(const Features& features, const C
   assert(candidates.size <= max_candidates_);
   matches_.clear();
   candidate_.clear();
+  index_landmarks(candidates);
   find_best_candidates(features, candidates, std::min(features.size(), max_features_));
   if (options_.is_mutual) keep_mutual(features, candidates);
   if (options_.max_rotation_deviation_rad > 0) keep_dominant_rotation(features, candidates);
@@ -113,12 +121,10 @@ void CandidateMatcher::find_best_candidates(const Features& features, const Cand
 std::uint16_t CandidateMatcher::rival_distance(const Descriptor& descriptor, const CandidateSet& candidates,
                                                std::int32_t landmark) {
   hamming_distances(descriptor, {candidates.descriptors.data(), candidates.size}, distances_.data());
-  std::uint16_t rival = kNoDistance;
-  for (std::size_t i = 0; i < candidates.size; ++i) {
-    const std::uint16_t distance = candidates.landmarks[i] == landmark ? kNoDistance : distances_[i];
-    rival = std::min(rival, distance);
-  }
-  return rival;
+  // Strike the landmark's own appearances out, then take the plain minimum.
+  for (std::int32_t i = first_in_slot_[slot_of(candidates, landmark)]; i >= 0; i = next_candidate_[static_cast<std::size_t>(i)])
+    distances_[static_cast<std::size_t>(i)] = kNoDistance;
+  return smallest(distances_.data(), candidates.size);
 }
 
 /// Slot of a landmark that is among the candidates, or the empty slot where it belongs.
@@ -151,16 +157,15 @@ std::int32_t CandidateMatcher::best_feature_of(std::size_t slot, const Features&
        candidate = next_candidate_[static_cast<std::size_t>(candidate)]) {
     hamming_distances(candidates.descriptors[static_cast<std::size_t>(candidate)], {features.descriptors.data(), num_features},
                       distances_.data());
-    const auto nearest = std::min_element(distances_.begin(), distances_.begin() + static_cast<std::ptrdiff_t>(num_features));
-    const auto feature = static_cast<std::int32_t>(nearest - distances_.begin());
-    if (*nearest < best_distance || (*nearest == best_distance && feature < best)) best_distance = *nearest, best = feature;
+    const std::uint16_t distance = smallest(distances_.data(), num_features);
+    if (distance > best_distance) continue;
+    const auto feature = static_cast<std::int32_t>(std::find(distances_.begin(), distances_.end(), distance) - distances_.begin());
+    if (distance < best_distance || feature < best) best_distance = distance, best = feature;
   }
   return best_feature_in_slot_[slot] = best;
 }
 
 void CandidateMatcher::keep_mutual(const Features& features, const CandidateSet& candidates) {
-  if (matches_.empty()) return;
-  index_landmarks(candidates);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < matches_.size(); ++i) {
     const std::size_t slot = slot_of(candidates, matches_[i].landmark);

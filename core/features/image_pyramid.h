@@ -31,6 +31,13 @@ struct ResizeTap {
   std::uint16_t weight = 0;  ///< of the second pixel, 0..256; 0 where there is no second pixel
 };
 
+/// Sixteen neighbouring columns for a vector kernel: each half takes its pixels from 16 source pixels.
+struct alignas(32) ResizeBlock {
+  std::uint8_t shuffle[32] = {};    ///< byte 2 i, 2 i + 1: the two pixels of column i, counted from the half's offset
+  std::uint16_t weight[16] = {};
+  std::int32_t offset[2] = {};
+};
+
 /// Linear resize with the arithmetic of cv::INTER_LINEAR_EXACT for one pair of sizes. Allocates at construction only.
 class ExactResize {
  public:
@@ -39,9 +46,8 @@ class ExactResize {
   void apply(const PaddedImage& src, PaddedImage* dst);
 
  private:
-  void resize_row(const std::uint8_t* src, std::uint16_t* dst) const;
-
   std::vector<ResizeTap> columns_, rows_;
+  std::vector<ResizeBlock> blocks_;         ///< the columns again for the vector kernel; empty where it cannot be used
   std::vector<std::uint16_t> row_buffer_[2];  ///< horizontally resized source rows, 8 fractional bits
 };
 
