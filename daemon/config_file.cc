@@ -11,7 +11,6 @@
 
 #include "daemon/config.h"
 
-#define TOML_EXCEPTIONS 0
 #include <toml++/toml.h>
 
 namespace camloc {

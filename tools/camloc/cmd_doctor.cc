@@ -58,16 +58,13 @@ void read_setting(const toml::table& config, const char* key, std::string* setti
 }
 
 void read_settings(const std::string& config_text, Settings* settings) {
-  try {
-    const toml::table config = toml::parse(config_text);
-    read_setting(config, "map.path", &settings->map_path);
-    read_setting(config, "source.url", &settings->source_url);
-    read_setting(config, "source.camera", &settings->camera_path);
-    read_setting(config, "publish.lcm_url", &settings->lcm_url);
-    read_setting(config, "control.socket", &settings->socket_path);
-  } catch (const toml::parse_error&) {
-    // The configuration check has said so already, or camlocd printed something that is not for us: defaults remain.
-  }
+  const toml::parse_result config = toml::parse(config_text);
+  if (!config) return;  // The configuration check has said so already, or camlocd printed something that is not for us: defaults remain.
+  read_setting(config.table(), "map.path", &settings->map_path);
+  read_setting(config.table(), "source.url", &settings->source_url);
+  read_setting(config.table(), "source.camera", &settings->camera_path);
+  read_setting(config.table(), "publish.lcm_url", &settings->lcm_url);
+  read_setting(config.table(), "control.socket", &settings->socket_path);
 }
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }

@@ -22,6 +22,9 @@ struct Command {
 };
 
 constexpr std::array kCommands{
+    Command{"localize", camloc::tools::add_localize_command},
+    Command{"eval", camloc::tools::add_eval_command},
+    Command{"map", camloc::tools::add_map_command},
     Command{"monitor", camloc::tools::add_monitor_command},
     Command{"ctl", camloc::tools::add_ctl_command},
     Command{"doctor", camloc::tools::add_doctor_command},
@@ -32,6 +35,7 @@ const std::vector<std::string> kMapCommands{"info", "verify"};
 const char* const kProgramsHelp =
     "Programs of the package camloc-tools, run as `camloc NAME`:\n"
     "  map build                   Build a map from a recorded walk\n"
+    "  bench                       Time and accuracy, beside plain OpenCV calls\n"
     "  sim                         Write a synthetic building with its walks";
 
 bool is_built_in(const CLI::App& app, const std::string& name) {

@@ -139,7 +139,7 @@ Status write_top_view(const TopView& view, const std::string& path, int width_px
   draw_text(canvas, view.title, {kMargin, 28}, kInk, 0.6);
   draw_legend(canvas);
   draw_scale_bar(canvas, projection);
-  return write_png_rgb(path, canvas.data, canvas.cols, canvas.rows);
+  return write_png(path, canvas.data, canvas.cols, canvas.rows, 3);
 }
 
 }  // namespace camloc::tools
