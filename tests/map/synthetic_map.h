@@ -63,7 +63,8 @@ class Random {
     return d;
   }
   /// The descriptor with `num_bits` random bits flipped (fewer when one is hit twice).
-  Descriptor noisy(Descriptor d, int num_bits) {
+  Descriptor noisy(const Descriptor& descriptor, int num_bits) {
+    Descriptor d = descriptor;
     for (int i = 0; i < num_bits; ++i) {
       const std::uint32_t bit = below(256);
       d.bits[bit / 64] ^= std::uint64_t{1} << (bit % 64);
