@@ -7,6 +7,7 @@
 #include <cassert>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "core/features/hamming.h"
 
@@ -72,8 +73,10 @@ void move_to_majority(std::span<const Descriptor> descriptors, std::span<const N
 }
 
 void remove_duplicates(std::vector<Descriptor>* words) {
-  std::sort(words->begin(), words->end(), [](const Descriptor& a, const Descriptor& b) { return a.bits < b.bits; });
-  words->erase(std::unique(words->begin(), words->end()), words->end());
+  std::set<std::array<std::uint64_t, 4>> different;
+  for (const Descriptor& word : *words) different.insert(word.bits);
+  words->clear();
+  for (const auto& bits : different) words->push_back({bits});
 }
 
 }  // namespace
