@@ -76,7 +76,9 @@ struct RgbdCamera {
   }
 };
 
-/// Undistortion of many pixels: bilinear look-up in a table built once. Exact at the nodes, every `step_px` pixels.
+/// Undistortion of many pixels: bilinear look-up in a table built once. Exact at the nodes, every `step_px` pixels; between
+/// them at most 0.04 px off for TUM fr1 and 0.12 px for a 140 degree lens, both in the extreme corner (mean 0.003, 0.03).
+/// A ray at 90 degrees or more to the optical axis has no normalized coordinates and is cut off just below.
 class UndistortionTable {
  public:
   explicit UndistortionTable(const Intrinsics& intrinsics, int step_px = 8);

@@ -58,7 +58,7 @@ double real_root_of_cubic(double b, double c, double d) {
     if (slope == 0.0) break;
     const double change = value / slope;
     x -= change;
-    if (std::abs(change) <= 1e-15 * std::abs(x)) break;
+    if (std::abs(change) <= 1e-8 * std::abs(x)) break;  // convergence is quadratic: the next change is below the last bit
   }
   return x;
 }
@@ -96,10 +96,10 @@ bool split_into_lines(const Matrix3d& degenerate, Vector3d* l, Vector3d* m) {
   return true;
 }
 
-/// Two Newton steps on the three distance equations.
+/// At most two Newton steps on the three distance equations.
 bool polish(const Distances& d, Vector3d* s) {
   Vector3d r = residual_of(d, *s);
-  for (int step = 0; step < 2; ++step) {
+  for (int step = 0; step < 2 && r.cwiseAbs().maxCoeff() > 1e-14 * d.squared_sum; ++step) {
     Matrix3d J = Matrix3d::Zero();
     for (std::size_t k = 0; k < 3; ++k) {
       const int i = kPairs[k][0], j = kPairs[k][1];

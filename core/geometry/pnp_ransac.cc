@@ -80,18 +80,13 @@ Eigen::Vector3d ray(const PoseScorer& pairs, std::size_t i) {
   return {p.x(), p.y(), 1.0};
 }
 
-/// Distances between the three points measured in the camera and in the map agree.
-bool is_consistent_with_depth(const PoseScorer& pairs, const Sample& sample, double max_relative_depth_error) {
-  for (const std::size_t i : sample) {
-    if (pairs.depth_m(i) == 0.0) return true;
-  }
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t i = sample[k], j = sample[(k + 1) % 3];
-    const double in_camera = (pairs.depth_m(i) * ray(pairs, i) - pairs.depth_m(j) * ray(pairs, j)).norm();
-    const double in_map = (pairs.landmark(i) - pairs.landmark(j)).norm();
-    if (std::abs(in_camera - in_map) > max_relative_depth_error * std::max(pairs.depth_m(i), pairs.depth_m(j))) return false;
-  }
-  return true;
+/// False where depth proves that not all three pairs are right.
+bool is_consistent_with_depth(const PoseScorer& pairs, const Sample& sample, float max_relative_depth_error) {
+  const auto [i, j, k] = sample;
+  if (!pairs.has_depth(i) || !pairs.has_depth(j) || !pairs.has_depth(k)) return true;
+  return pairs.is_distance_consistent(i, j, max_relative_depth_error) &&
+         pairs.is_distance_consistent(j, k, max_relative_depth_error) &&
+         pairs.is_distance_consistent(k, i, max_relative_depth_error);
 }
 
 ScoredPose scored_pose(const Eigen::Matrix3d& R_camera_map, const Eigen::Vector3d& t_camera_map) {
@@ -188,11 +183,12 @@ PnpRansacResult PnpRansac::estimate(const Correspondences& pairs, double focal_p
   GrowthSchedule schedule(n, options_.iterations);
   Best best;
   int num_polished = 0;
+  const auto max_relative_depth_error = static_cast<float>(options_.max_relative_depth_error);
   for (int iteration = 0; iteration < options_.iterations; ++iteration) {
     const std::size_t pool_size = schedule.pool_size(iteration);
     Sample sample = draw(pool_size, &random);
     for (int redraw = 0; redraw < kMaxRedraws; ++redraw) {
-      if (is_consistent_with_depth(scorer_, sample, options_.max_relative_depth_error)) break;
+      if (is_consistent_with_depth(scorer_, sample, max_relative_depth_error)) break;
       sample = draw(pool_size, &random);
     }
     if (try_sample(scorer_, sample, &best) && num_polished < options_.local_optimizations) {

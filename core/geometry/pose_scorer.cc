@@ -6,6 +6,7 @@
 #include "core/geometry/pose_scorer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace camloc {
@@ -117,6 +118,13 @@ float PoseScorer::cost(const ScoredPose& pose, float limit) const {
   const KernelInput input{x_.data(), y_.data(), X_.data(), Y_.data(), Z_.data(), min_z_.data(), max_z_.data(),
                           padded(size_), squared_focal_, max_squared_error_};
   return function(input, pose, limit);
+}
+
+bool PoseScorer::is_distance_consistent(std::size_t i, std::size_t j, float relative) const {
+  const float dx = x_[i] * depth_[i] - x_[j] * depth_[j], dy = y_[i] * depth_[i] - y_[j] * depth_[j], dz = depth_[i] - depth_[j];
+  const float dX = X_[i] - X_[j], dY = Y_[i] - Y_[j], dZ = Z_[i] - Z_[j];
+  const float in_camera = std::sqrt(dx * dx + dy * dy + dz * dz), in_map = std::sqrt(dX * dX + dY * dY + dZ * dZ);
+  return std::abs(in_camera - in_map) <= relative * std::max(depth_[i], depth_[j]);
 }
 
 PoseScorer::PairCost PoseScorer::pair_cost(const ScoredPose& pose, std::size_t i) const {

@@ -34,7 +34,10 @@ class PoseScorer {
   /// Pair i: normalized image point, landmark relative to `centre`, measured depth (0 = none).
   [[nodiscard]] Eigen::Vector2d image_point(std::size_t i) const { return {x_[i], y_[i]}; }
   [[nodiscard]] Eigen::Vector3d landmark(std::size_t i) const { return {X_[i], Y_[i], Z_[i]}; }
-  [[nodiscard]] double depth_m(std::size_t i) const { return depth_[i]; }
+  [[nodiscard]] bool has_depth(std::size_t i) const { return depth_[i] > 0.0F; }
+  /// The distance between the points of pairs i and j, measured in the camera (both have depth), differs from that in the
+  /// map by at most `relative` times the farther depth.
+  [[nodiscard]] bool is_distance_consistent(std::size_t i, std::size_t j, float relative) const;
 
   /// Sum over all pairs of min(squared error, max_error^2), px^2, plus a constant that depends on the pairs alone; pairs
   /// behind the camera and pairs that contradict their measured depth count max_error^2. Returns something >= `limit` as

@@ -117,7 +117,8 @@ TEST(Camera, UndistortionTableIsNearTheModel) {
         worst_px = std::max(worst_px, (camera.distort(looked_up) - camera.distort(exact)).norm());
       }
     }
-    EXPECT_LT(worst_px, 0.05);
+    // The worst is in the extreme corners; the tangent makes a wide lens steep there.
+    EXPECT_LT(worst_px, camera.lens == LensModel::kEquidistant ? 0.15 : 0.05);
   }
 }
 
