@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Requests and replies as text.
+#include "daemon/control_protocol.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace camloc {
+namespace {
+
+TEST(ControlProtocolTest, CommandsAreUnderstood) {
+  EXPECT_EQ(parse_control_request("status").value(), ControlCommand::kStatus);
+  EXPECT_EQ(parse_control_request(" reload\r").value(), ControlCommand::kReload);
+  EXPECT_EQ(parse_control_request("\treset ").value(), ControlCommand::kReset);
+}
+
+TEST(ControlProtocolTest, AnythingElseIsRefusedWithTheList) {
+  for (const char* line : {"", " ", "Status", "status now", "statu", "reload\n", "{}"}) {
+    const Result<ControlCommand> command = parse_control_request(line);
+    ASSERT_FALSE(command) << line;
+    EXPECT_NE(command.status().message().find("one of status, reload, reset"), std::string::npos);
+  }
+  EXPECT_LT(parse_control_request(std::string(100000, 'x')).status().message().size(), 200U);
+}
+
+TEST(ControlProtocolTest, RepliesAreJsonWhateverTheText) {
+  EXPECT_EQ(control_reply(Status::ok()), "{\"ok\":true}");
+  EXPECT_EQ(control_reply(Status(ErrorCode::kInvalid, "a \"b\" \\ \n\x01\xff")),
+            "{\"ok\":false,\"error\":\"a \\\"b\\\" \\\\ \\u000a\\u0001\\u00ff\"}");
+}
+
+TEST(ControlProtocolTest, StatusNamesEveryField) {
+  status_t status{};
+  status.state = 4;
+  status.state_text = "fine";
+  status.map_id = -1;
+  status.frames_received = std::numeric_limits<std::int64_t>::max();
+  status.latency_p50_ms = 1.25;
+  status.focal_scale = std::numeric_limits<double>::quiet_NaN();
+  const std::string reply = control_reply(status);
+  EXPECT_EQ(reply.find('\n'), std::string::npos);
+  for (const char* part : {"\"ok\":true", "\"state\":\"LOCALIZED\"", "\"state_text\":\"fine\"", "\"map_id\":\"ffffffffffffffff\"",
+                           "\"frames_received\":9223372036854775807", "\"latency_p50_ms\":1.25", "\"focal_scale\":null",
+                           "\"is_calibration_suspect\":false", "\"source\":\"\"", "\"uptime_us\":0", "\"rss_bytes\":0"}) {
+    EXPECT_NE(reply.find(part), std::string::npos) << part << " not in " << reply;
+  }
+}
+
+}  // namespace
+}  // namespace camloc
