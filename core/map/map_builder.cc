@@ -18,9 +18,11 @@ namespace camloc {
 namespace {
 
 constexpr std::size_t kMaxKeyframes = 65535;   // InvertedEntry::keyframe
-constexpr int kMaxBudgetRounds = 5;
+constexpr int kMaxBudgetRounds = 24;
+constexpr std::uint32_t kMaxKeyframeGain = 200;
 // What a landmark costs in the file: its record, one descriptor, its share of words and lists.
-constexpr double kRecordBytes = 16, kDescriptorBytes = 32, kListEntryBytes = 4, kInvertedEntryBytes = 3, kKeyframeBytes = 40, kFixedBytes = 2048;
+constexpr double kRecordBytes = 16, kDescriptorBytes = 32, kListEntryBytes = 1.2, kInvertedEntryBytes = 3, kKeyframeBytes = 40, kFixedBytes = 2048,
+                 kMinWordBytes = 64 * 36;
 
 std::string size_text(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
 
@@ -56,10 +58,12 @@ struct MapBuilder::Impl {
 
   [[nodiscard]] Status check(const Frame& frame, const Rigid3& T_map_camera) const;
   [[nodiscard]] ViewFeatures view_features(const Frame& frame, const Rigid3& T_map_camera);
-  [[nodiscard]] MapData select(std::uint32_t max_landmarks);
-  void choose_keyframes(const std::vector<std::uint32_t>& kept, MapData* map);
+  [[nodiscard]] std::vector<std::uint32_t> useful_landmarks(std::uint32_t max_landmarks) const;
+  [[nodiscard]] MapData select(const std::vector<std::uint32_t>& kept, std::uint32_t min_gain);
+  void choose_keyframes(const std::vector<std::uint32_t>& kept, std::uint32_t min_gain, MapData* map);
   void keep_descriptors(const std::vector<std::uint32_t>& kept, MapData* map) const;
   void add_words(MapData* map) const;
+  void count(const MapData& map, std::uint64_t file_bytes, std::uint32_t num_pairs);
 
   RgbdCamera camera;
   MapBuildOptions options;
@@ -125,23 +129,26 @@ ViewFeatures MapBuilder::Impl::view_features(const Frame& frame, const Rigid3& T
   return view;
 }
 
-// Landmarks, keyframes and descriptors of a map with at most this many landmarks; no words yet.
-MapData MapBuilder::Impl::select(std::uint32_t max_landmarks) {
+std::vector<std::uint32_t> MapBuilder::Impl::useful_landmarks(std::uint32_t max_landmarks) const {
   LandmarkBudgetOptions budget;
   budget.max_landmarks = max_landmarks;
   budget.min_observations = static_cast<std::uint32_t>(std::max(options.min_observations, 1));
   budget.wanted_per_view = static_cast<std::uint32_t>(std::max(options.landmarks_per_view, 1));
-  std::vector<std::uint32_t> kept = select_landmarks(fusion.views(), all.size(), budget);
+  return select_landmarks(fusion.views(), all.size(), budget);
+}
+
+// Landmarks, keyframes and descriptors of a map of the kept landmarks; no words yet.
+MapData MapBuilder::Impl::select(const std::vector<std::uint32_t>& kept, std::uint32_t min_gain) {
   MapData map;
   map.camera = camera;
   map.orb_scale_factor = options.orb.scale_factor;
   map.orb_num_levels = static_cast<std::uint32_t>(options.orb.num_levels);
-  choose_keyframes(kept, &map);
+  choose_keyframes(kept, min_gain, &map);
   return map;
 }
 
 // Keyframes that cover the kept landmarks, with their lists; landmarks that only a superfluous view would cover go.
-void MapBuilder::Impl::choose_keyframes(const std::vector<std::uint32_t>& kept, MapData* map) {
+void MapBuilder::Impl::choose_keyframes(const std::vector<std::uint32_t>& kept, std::uint32_t min_gain, MapData* map) {
   constexpr std::uint32_t kGone = 0xFFFFFFFF;
   std::vector<std::uint32_t> new_index(all.size(), kGone);
   for (std::uint32_t i = 0; i < kept.size(); ++i) new_index[kept[i]] = i;
@@ -153,7 +160,7 @@ void MapBuilder::Impl::choose_keyframes(const std::vector<std::uint32_t>& kept, 
     }
     if (!lists[v].empty()) ++report.num_keyframes_before;
   }
-  const KeyframeCover cover = cover_with_keyframes(lists, kept.size(), static_cast<std::uint32_t>(std::max(options.min_keyframe_gain, 1)));
+  const KeyframeCover cover = cover_with_keyframes(lists, kept.size(), min_gain);
   std::vector<std::uint32_t> covered, renumbered(kept.size(), kGone);
   for (std::uint32_t i = 0; i < kept.size(); ++i) {
     if (std::binary_search(cover.uncovered.begin(), cover.uncovered.end(), i)) continue;
@@ -203,43 +210,56 @@ void MapBuilder::Impl::add_words(MapData* map) const {
   build_inverted_file(map);
 }
 
+void MapBuilder::Impl::count(const MapData& map, std::uint64_t file_bytes, std::uint32_t num_pairs) {
+  report.num_observations = fusion.num_observations();
+  report.num_landmarks_before = static_cast<std::uint32_t>(fusion.num_landmarks());
+  report.num_landmarks = static_cast<std::uint32_t>(map.landmarks.size());
+  report.num_keyframes = static_cast<std::uint32_t>(map.keyframes.size());
+  report.num_descriptors = 0;
+  for (const MapLandmark& landmark : map.landmarks) report.num_descriptors += static_cast<std::uint32_t>(landmark.descriptors.size());
+  report.num_words = static_cast<std::uint32_t>(map.words.size());
+  report.file_bytes = file_bytes;
+  report.num_consistency_pairs = num_pairs;
+}
+
 Result<MapData> MapBuilder::finish(MapBuildReport* report) {
   Impl& self = *impl_;
+  const MapBuildOptions& options = self.options;
   self.all = self.fusion.landmarks(&self.support);
   const PoseConsistencyEstimate consistency = self.consistency.estimate();
-  const std::uint64_t max_bytes = self.options.max_bytes;
   std::uint32_t max_landmarks = 0;
-  if (max_bytes > 0) max_landmarks = static_cast<std::uint32_t>(std::max(1.0, static_cast<double>(max_bytes) / self.options.max_bytes_per_landmark));
+  auto min_gain = static_cast<std::uint32_t>(std::max(options.min_keyframe_gain, 1));
+  if (options.max_bytes > 0) max_landmarks = static_cast<std::uint32_t>(static_cast<double>(options.max_bytes) / options.max_bytes_per_landmark) + 1;
+  std::vector<std::uint32_t> kept = self.useful_landmarks(max_landmarks);
   for (int round = 0; round < kMaxBudgetRounds; ++round) {
-    MapData map = self.select(max_landmarks);
-    if (map.landmarks.empty()) return {ErrorCode::kInvalid, "map: no landmark is left; are there textured surfaces with depth in the frames, and are the poses right?"};
+    MapData map = self.select(kept, min_gain);
+    if (map.landmarks.empty()) {
+      return {ErrorCode::kInvalid, options.max_bytes > 0
+                                       ? "map: no landmark fits into " + std::to_string(options.max_bytes) + " bytes; raise the byte budget"
+                                       : "map: no landmark is left; do the frames show textured surfaces with depth, and are the poses right?"};
+    }
     if (map.keyframes.size() > kMaxKeyframes) return {ErrorCode::kUnsupported, "map: more than 65535 keyframes; select fewer frames"};
     self.add_words(&map);
     map.pose_sigma_m = consistency.sigma_m;
     map.pose_sigma_rad = consistency.sigma_rad;
-    auto bytes = serialize_map(map);
+    const auto bytes = serialize_map(map);
     if (!bytes.is_ok()) return bytes.status();
-    const std::uint64_t size = bytes->size();
-    if (max_bytes > 0 && size > max_bytes) {
-      const double shrink = 0.99 * static_cast<double>(max_bytes) / static_cast<double>(size);
-      max_landmarks = static_cast<std::uint32_t>(std::max(1.0, shrink * static_cast<double>(map.landmarks.size())));
-      continue;
+    const auto size = static_cast<double>(bytes.value().size()), num_landmarks = static_cast<double>(map.landmarks.size());
+    // Small maps consist of headers and words: the bytes a landmark mean something from a few thousand on.
+    const bool has_long_lists = size > options.max_bytes_per_landmark * num_landmarks + kFixedBytes + kMinWordBytes;
+    if (has_long_lists && min_gain < kMaxKeyframeGain) {
+      min_gain += min_gain / 2 + 1;
+    } else if (options.max_bytes > 0 && bytes.value().size() > options.max_bytes) {
+      max_landmarks = static_cast<std::uint32_t>(0.98 * static_cast<double>(options.max_bytes) / size * static_cast<double>(kept.size()));
+      if (max_landmarks == 0) break;
+      kept = self.useful_landmarks(max_landmarks);
+    } else {
+      self.count(map, bytes.value().size(), consistency.num_pairs);
+      if (report != nullptr) *report = self.report;
+      return map;
     }
-    MapBuildReport& r = self.report;
-    const MapBuildReport counted = progress();
-    r.num_observations = counted.num_observations;
-    r.num_landmarks_before = counted.num_landmarks_before;
-    r.num_landmarks = static_cast<std::uint32_t>(map.landmarks.size());
-    r.num_keyframes = static_cast<std::uint32_t>(map.keyframes.size());
-    r.num_descriptors = 0;
-    for (const MapLandmark& landmark : map.landmarks) r.num_descriptors += static_cast<std::uint32_t>(landmark.descriptors.size());
-    r.num_words = static_cast<std::uint32_t>(map.words.size());
-    r.file_bytes = size;
-    r.num_consistency_pairs = consistency.num_pairs;
-    if (report != nullptr) *report = r;
-    return map;
   }
-  return {ErrorCode::kInvalid, "map: " + std::to_string(max_bytes) + " bytes are not enough for a map of these frames; raise the byte budget"};
+  return {ErrorCode::kInvalid, "map: " + std::to_string(options.max_bytes) + " bytes are not enough for a map of these frames; raise the byte budget"};
 }
 
 }  // namespace camloc

@@ -26,9 +26,9 @@ struct MapBuildOptions {
   int appearance_distance = 48;          ///< an observation farther than this from all of a landmark's descriptors adds one
   int max_descriptors_per_landmark = 4;
   int min_observations = 2;              ///< landmarks seen by fewer frames are dropped where others are enough
-  int landmarks_per_view = 400;          ///< a landmark is not needed where all views that see it have this many
+  int landmarks_per_view = 1000;          ///< a landmark is not needed where all views that see it have this many
   double max_bytes_per_landmark = 60;    ///< of the whole file: bounds the further descriptors
-  int min_keyframe_gain = 8;             ///< a view that alone sees fewer landmarks is no keyframe; those landmarks go
+  int min_keyframe_gain = 20;             ///< a view that alone sees fewer landmarks is no keyframe; those landmarks go
 };
 
 struct MapBuildReport {
