@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Log lines, their prefix, and what holds a flood back.
+#include "daemon/log.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+
+#include "core/base/unique_fd.h"
+
+namespace camloc {
+namespace {
+
+class LogTest : public ::testing::Test {
+ protected:
+  LogTest() {
+    std::array<int, 2> ends{};
+    EXPECT_EQ(::pipe2(ends.data(), O_NONBLOCK | O_CLOEXEC), 0);
+    read_end_.reset(ends[0]);
+    write_end_.reset(ends[1]);
+  }
+  std::string written() {
+    std::string text(60000, '\0');
+    const ssize_t count = ::read(read_end_.get(), text.data(), text.size());
+    text.resize(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+    return text;
+  }
+  UniqueFd read_end_, write_end_;
+};
+
+TEST_F(LogTest, PrefixForTheJournalAndForPeople) {
+  Log journal(LogLevel::kDebug, write_end_.get(), true);
+  journal.error("a %d", 1);
+  journal.warning("b");
+  journal.info("c");
+  journal.debug("d");
+  EXPECT_EQ(written(), "<3>a 1\n<4>b\n<6>c\n<7>d\n");
+  Log plain(LogLevel::kInfo, write_end_.get(), false);
+  plain.info("c");
+  EXPECT_EQ(written(), "camlocd: info: c\n");
+}
+
+TEST_F(LogTest, LevelFilters) {
+  Log log(LogLevel::kWarning, write_end_.get(), true);
+  log.info("no");
+  log.warning("yes");
+  log.set_level(LogLevel::kError);
+  log.warning("no");
+  EXPECT_EQ(written(), "<4>yes\n");
+}
+
+TEST_F(LogTest, ALineStaysALine) {
+  Log log(LogLevel::kInfo, write_end_.get(), true);
+  log.info("%s", "a\nb\r<3>c");
+  EXPECT_EQ(written(), "<6>a b <3>c\n");
+  log.info("%s", std::string(5000, 'x').c_str());
+  const std::string line = written();
+  EXPECT_LT(line.size(), 1100U);
+  EXPECT_EQ(std::count(line.begin(), line.end(), '\n'), 1);
+}
+
+TEST_F(LogTest, FloodIsHeldBackAndCounted) {
+  Log log(LogLevel::kInfo, write_end_.get(), true);
+  for (int i = 0; i < 1000; ++i) log.info("flood");
+  const std::string text = written();
+  EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 900);
+  EXPECT_GE(std::count(text.begin(), text.end(), '\n'), 30);
+  EXPECT_GT(log.num_suppressed(), 0U);
+}
+
+TEST(RepeatFilterTest, OnlyNewTextsPass) {
+  RepeatFilter filter;
+  EXPECT_TRUE(filter.is_new("a"));
+  EXPECT_FALSE(filter.is_new("a"));
+  EXPECT_TRUE(filter.is_new("b"));
+  EXPECT_TRUE(filter.is_new("a"));
+  filter.clear();
+  EXPECT_TRUE(filter.is_new("a"));
+}
+
+}  // namespace
+}  // namespace camloc
