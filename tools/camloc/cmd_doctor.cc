@@ -59,8 +59,7 @@ void read_setting(const toml::table& config, const char* key, std::string* setti
 
 void read_settings(const std::string& config_text, Settings* settings) {
   const toml::parse_result config = toml::parse(config_text);
-  if (!config)
-    return;  // The configuration check has said so already, or camlocd printed something that is not for us: defaults remain.
+  if (!config) return;  // the configuration check has said so already: defaults remain
   read_setting(config.table(), "map.path", &settings->map_path);
   read_setting(config.table(), "source.url", &settings->source_url);
   read_setting(config.table(), "source.camera", &settings->camera_path);
