@@ -16,7 +16,8 @@ struct Candidate {
 };
 
 std::uint32_t gain_of(const std::vector<std::uint32_t>& items, const std::vector<std::uint32_t>& times_covered) {
-  return static_cast<std::uint32_t>(std::count_if(items.begin(), items.end(), [&](std::uint32_t i) { return times_covered[i] == 0; }));
+  return static_cast<std::uint32_t>(
+      std::count_if(items.begin(), items.end(), [&](std::uint32_t i) { return times_covered[i] == 0; }));
 }
 
 // A gain can only shrink as views are taken, so an old gain is an upper bound: only the top of the queue is looked at again
@@ -43,7 +44,8 @@ std::vector<std::uint32_t> take_views(std::span<const std::vector<std::uint32_t>
 
 }  // namespace
 
-KeyframeCover cover_with_keyframes(std::span<const std::vector<std::uint32_t>> items_of_view, std::size_t num_items, std::uint32_t min_gain) {
+KeyframeCover cover_with_keyframes(std::span<const std::vector<std::uint32_t>> items_of_view, std::size_t num_items,
+                                   std::uint32_t min_gain) {
   std::vector<std::uint32_t> times_covered(num_items, 0);
   const std::vector<std::uint32_t> taken = take_views(items_of_view, min_gain, &times_covered);
   KeyframeCover cover;

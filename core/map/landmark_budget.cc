@@ -18,7 +18,10 @@ struct Candidate {
 class Selector {
  public:
   Selector(std::span<const std::vector<ViewObservation>> views, std::size_t num_landmarks)
-      : first_bin_(num_landmarks + 1, 0), count_of_bin_(views.size() * kNumCells, 0), count_of_view_(views.size(), 0), is_kept_(num_landmarks, 0) {
+      : first_bin_(num_landmarks + 1, 0),
+        count_of_bin_(views.size() * kNumCells, 0),
+        count_of_view_(views.size(), 0),
+        is_kept_(num_landmarks, 0) {
     for (const auto& view : views) {
       for (const ViewObservation& o : view) ++first_bin_[o.landmark + 1];
     }
@@ -63,7 +66,8 @@ class Selector {
   }
   [[nodiscard]] double gain(std::uint32_t landmark) const {
     double sum = 0;
-    for (const std::uint32_t bin : bins_of(landmark)) sum += std::sqrt(count_of_bin_[bin] + 1.0) - std::sqrt(static_cast<double>(count_of_bin_[bin]));
+    for (const std::uint32_t bin : bins_of(landmark))
+      sum += std::sqrt(count_of_bin_[bin] + 1.0) - std::sqrt(static_cast<double>(count_of_bin_[bin]));
     return sum;
   }
   [[nodiscard]] bool is_needed(std::uint32_t landmark, std::uint32_t wanted) const {
@@ -79,8 +83,8 @@ class Selector {
     }
   }
 
-  std::vector<std::size_t> first_bin_;      ///< per landmark, into bins_
-  std::vector<std::uint32_t> bins_;         ///< (view, cell) of each observation, grouped by landmark
+  std::vector<std::size_t> first_bin_;  ///< per landmark, into bins_
+  std::vector<std::uint32_t> bins_;     ///< (view, cell) of each observation, grouped by landmark
   std::vector<std::uint32_t> count_of_bin_, count_of_view_;
   std::vector<std::uint8_t> is_kept_;
   std::uint32_t num_kept_ = 0;

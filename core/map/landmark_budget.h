@@ -16,14 +16,14 @@
 namespace camloc {
 
 struct LandmarkBudgetOptions {
-  std::uint32_t max_landmarks = 0;         ///< 0 = no limit
-  std::uint32_t min_observations = 2;      ///< landmarks with fewer are taken only for views that need them
-  std::uint32_t wanted_per_view = 400;     ///< a landmark all of whose views have this many is not needed
-  std::uint32_t min_per_view = 60;         ///< a view with fewer needs every landmark it can get
+  std::uint32_t max_landmarks = 0;      ///< 0 = no limit
+  std::uint32_t min_observations = 2;   ///< landmarks with fewer are taken only for views that need them
+  std::uint32_t wanted_per_view = 400;  ///< a landmark all of whose views have this many is not needed
+  std::uint32_t min_per_view = 60;      ///< a view with fewer needs every landmark it can get
 };
 
 /// Indices of the landmarks to keep, ascending.
-[[nodiscard]] std::vector<std::uint32_t> select_landmarks(std::span<const std::vector<ViewObservation>> views, std::size_t num_landmarks,
-                                                          const LandmarkBudgetOptions& options);
+[[nodiscard]] std::vector<std::uint32_t> select_landmarks(std::span<const std::vector<ViewObservation>> views,
+                                                          std::size_t num_landmarks, const LandmarkBudgetOptions& options);
 
 }  // namespace camloc

@@ -15,7 +15,6 @@ namespace {
 
 // Wide enough that the neighbouring voxels of a point hold every landmark it may be fused with up to about 5 m.
 constexpr double kVoxelM = 0.30;
-constexpr std::size_t kMaxSamples = 12;
 // Recorded poses shake by a few millimetres from frame to frame; no observation is better than that.
 constexpr double kPoseNoiseM = 0.004;
 constexpr std::int64_t kNone = -1, kAbsorbed = -2;
@@ -119,7 +118,8 @@ void LandmarkFusion::gather_candidates(const ViewFeatures& view) {
   std::vector<std::uint64_t> keys;
   keys.reserve(occupied.size() * 27);
   for (const auto& v : occupied) {
-    for (int offset = 0; offset < 27; ++offset) keys.push_back(voxel_key(v[0] + offset % 3 - 1, v[1] + offset / 3 % 3 - 1, v[2] + offset / 9 - 1));
+    for (int offset = 0; offset < 27; ++offset)
+      keys.push_back(voxel_key(v[0] + offset % 3 - 1, v[1] + offset / 3 % 3 - 1, v[2] + offset / 9 - 1));
   }
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
@@ -154,7 +154,8 @@ void LandmarkFusion::pair_landmark(const ViewFeatures& view, std::uint32_t index
   const auto bucket_of = [&](float value, int count) {
     return std::clamp(static_cast<int>(std::floor(value / static_cast<float>(grid_.cell_px()))), 0, count - 1);
   };
-  const int first_column = bucket_of(pixel.x() - reach, grid_.columns()), last_column = bucket_of(pixel.x() + reach, grid_.columns());
+  const int first_column = bucket_of(pixel.x() - reach, grid_.columns()),
+            last_column = bucket_of(pixel.x() + reach, grid_.columns());
   const int first_row = bucket_of(pixel.y() - reach, grid_.rows()), last_row = bucket_of(pixel.y() + reach, grid_.rows());
   for (int row = first_row; row <= last_row; ++row) {
     for (int column = first_column; column <= last_column; ++column) {
@@ -174,7 +175,8 @@ bool LandmarkFusion::is_consistent(const Fused& landmark, double z_m, const View
   const double depth = view.depth_m[feature];
   if (depth <= 0) return false;
   const double sigma = depth_noise_.sigma_m(depth) * std::sqrt(1.0 + 1.0 / landmark.num_observations);
-  const double tolerance = std::clamp(options_.max_depth_sigmas * sigma, options_.min_depth_tolerance_m, options_.max_depth_tolerance_m);
+  const double tolerance =
+      std::clamp(options_.max_depth_sigmas * sigma, options_.min_depth_tolerance_m, options_.max_depth_tolerance_m);
   if (std::abs(z_m - depth) > tolerance) return false;
   const float reference = reference_m(view, feature), ratio = static_cast<float>(options_.max_reference_ratio);
   return reference * ratio >= landmark.min_reference_m && reference <= landmark.max_reference_m * ratio;
@@ -188,14 +190,16 @@ std::int64_t LandmarkFusion::find_new_landmark(const ViewFeatures& view, std::si
     return std::clamp(static_cast<int>(std::floor(value / static_cast<float>(grid_.cell_px()))), 0, count - 1);
   };
   for (int row = bucket_of(keypoint.v - radius, grid_.rows()); row <= bucket_of(keypoint.v + radius, grid_.rows()); ++row) {
-    for (int column = bucket_of(keypoint.u - radius, grid_.columns()); column <= bucket_of(keypoint.u + radius, grid_.columns()); ++column) {
+    for (int column = bucket_of(keypoint.u - radius, grid_.columns()); column <= bucket_of(keypoint.u + radius, grid_.columns());
+         ++column) {
       for (const std::int32_t other : grid_.bucket(column, row)) {
         const auto o = static_cast<std::size_t>(other);
         if (is_new_[o] == 0) continue;
         const Keypoint& rival = view.features.keypoints[o];
         if (std::hypot(rival.u - keypoint.u, rival.v - keypoint.v) > radius) continue;
         if (std::abs(view.depth_m[o] - view.depth_m[feature]) > options_.min_depth_tolerance_m) continue;
-        if (hamming_distance(view.features.descriptors[o], view.features.descriptors[feature]) <= options_.max_distance) return landmark_of_feature_[o];
+        if (hamming_distance(view.features.descriptors[o], view.features.descriptors[feature]) <= options_.max_distance)
+          return landmark_of_feature_[o];
       }
     }
   }
@@ -266,82 +270,9 @@ void LandmarkFusion::add_appearance(const Keypoint& keypoint, const Descriptor& 
     landmark.samples.push_back({descriptor, keypoint.angle_rad});
     return;
   }
-  const std::uint64_t slot = mix((static_cast<std::uint64_t>(index) << 32) | landmark.num_observations) % landmark.num_observations;
+  const std::uint64_t slot =
+      mix((static_cast<std::uint64_t>(index) << 32) | landmark.num_observations) % landmark.num_observations;
   if (slot < kMaxSamples) landmark.samples[slot] = {descriptor, keypoint.angle_rad};
-}
-
-// Medoid first; then, while some sample is farther than appearance_distance from all chosen, the sample that stands for the
-// most of those left over.
-void LandmarkFusion::choose_descriptors(const Fused& from, MapLandmark* to, std::vector<std::uint32_t>* support) const {
-  const std::size_t count = from.samples.size();
-  std::array<std::array<int, kMaxSamples>, kMaxSamples> distance{};
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t j = 0; j < i; ++j) distance[i][j] = distance[j][i] = hamming_distance(from.samples[i].descriptor, from.samples[j].descriptor);
-  }
-  std::array<bool, kMaxSamples> is_covered{};
-  while (to->descriptors.size() < static_cast<std::size_t>(options_.max_descriptors)) {
-    std::size_t best = count;
-    int best_count = 0, best_sum = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (is_covered[i]) continue;
-      int near = 0, sum = 0;
-      for (std::size_t j = 0; j < count; ++j) {
-        if (is_covered[j]) continue;
-        near += distance[i][j] <= options_.appearance_distance ? 1 : 0;
-        sum += distance[i][j];
-      }
-      const bool is_medoid_round = to->descriptors.empty();
-      if (best == count || (is_medoid_round ? sum < best_sum : near > best_count || (near == best_count && sum < best_sum))) {
-        best = i, best_count = near, best_sum = sum;
-      }
-    }
-    if (best == count) return;
-    if (to->descriptors.empty()) to->angle_rad = from.samples[best].angle_rad;
-    to->descriptors.push_back(from.samples[best].descriptor);
-    support->push_back(static_cast<std::uint32_t>(best_count));
-    for (std::size_t j = 0; j < count; ++j) is_covered[j] = is_covered[j] || distance[best][j] <= options_.appearance_distance;
-  }
-}
-
-void LandmarkFusion::set_viewing_directions(std::vector<MapLandmark>* landmarks) const {
-  const auto to_camera = [&](std::size_t view, std::uint32_t index) -> Eigen::Vector3f {
-    return (poses_[view].translation - landmarks_[index].position_m).normalized().cast<float>();
-  };
-  for (MapLandmark& landmark : *landmarks) landmark.direction.setZero();
-  for (std::size_t view = 0; view < views_.size(); ++view) {
-    for (const ViewObservation& o : views_[view]) (*landmarks)[o.landmark].direction += to_camera(view, o.landmark);
-  }
-  for (MapLandmark& landmark : *landmarks) {
-    landmark.direction = landmark.direction.norm() > 1e-6F ? Eigen::Vector3f(landmark.direction.normalized()) : Eigen::Vector3f(0, 0, -1);
-  }
-  for (std::size_t view = 0; view < views_.size(); ++view) {
-    for (const ViewObservation& o : views_[view]) {
-      MapLandmark& landmark = (*landmarks)[o.landmark];
-      landmark.view_cosine = std::min(landmark.view_cosine, std::max(-1.0F, landmark.direction.dot(to_camera(view, o.landmark))));
-    }
-  }
-}
-
-std::vector<MapLandmark> LandmarkFusion::landmarks(std::vector<std::vector<std::uint32_t>>* support) const {
-  std::vector<MapLandmark> result(landmarks_.size());
-  support->assign(landmarks_.size(), {});
-  for (std::size_t i = 0; i < landmarks_.size(); ++i) {
-    const Fused& from = landmarks_[i];
-    MapLandmark& to = result[i];
-    to.position_m = from.position_m.cast<float>();
-    to.min_reference_m = from.min_reference_m;
-    to.max_reference_m = from.max_reference_m;
-    to.num_observations = from.num_observations;
-    const double n = from.num_observations;
-    const double expected = std::sqrt(from.information.inverse().trace() / 3.0 * n);  // of one observation
-    const Eigen::Vector3d mean = from.sum / n;
-    const double scatter = std::sqrt(std::max(0.0, from.sum_squared / n - mean.squaredNorm()) / 3.0);
-    // A handful of points says little about its own scatter: the expected one counts as two more observations.
-    to.position_sigma_m = static_cast<float>(std::sqrt((n * scatter * scatter + 2.0 * expected * expected) / (n + 2.0)));
-    choose_descriptors(from, &to, &(*support)[i]);
-  }
-  set_viewing_directions(&result);
-  return result;
 }
 
 }  // namespace camloc

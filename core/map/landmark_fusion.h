@@ -31,23 +31,23 @@ struct ViewFeatures {
 };
 
 struct FusionOptions {
-  double radius_px = 4.0;           ///< of level 0; grows with the feature's level
-  int max_distance = 64;            ///< descriptor distance to any appearance of the landmark
-  int appearance_distance = 48;     ///< farther than this from all appearances is a new one
-  int max_descriptors = 4;          ///< appearances a landmark may keep
-  double max_depth_sigmas = 3.0;    ///< tolerance along the optical axis
+  double radius_px = 4.0;         ///< of level 0; grows with the feature's level
+  int max_distance = 64;          ///< descriptor distance to any appearance of the landmark
+  int appearance_distance = 48;   ///< farther than this from all appearances is a new one
+  int max_descriptors = 4;        ///< appearances a landmark may keep
+  double max_depth_sigmas = 3.0;  ///< tolerance along the optical axis
   double min_depth_tolerance_m = 0.02;
   double max_depth_tolerance_m = 0.30;
-  double max_reference_ratio = 2.0; ///< of the reference distance to the range the landmark has been seen with
+  double max_reference_ratio = 2.0;  ///< of the reference distance to the range the landmark has been seen with
   float scale_factor = 1.2F;
   int num_levels = 8;
-  int max_features = 2000;          ///< features of a view beyond this are ignored
+  int max_features = 2000;  ///< features of a view beyond this are ignored
 };
 
 /// A landmark as one view saw it.
 struct ViewObservation {
   std::uint32_t landmark = 0;
-  std::uint8_t cell = 0;            ///< of kCellColumns x kCellRows over the image, row by row
+  std::uint8_t cell = 0;  ///< of kCellColumns x kCellRows over the image, row by row
 };
 inline constexpr int kCellColumns = 4, kCellRows = 3, kNumCells = kCellColumns * kCellRows;
 
@@ -75,21 +75,22 @@ class LandmarkFusion {
   [[nodiscard]] std::vector<MapLandmark> landmarks(std::vector<std::vector<std::uint32_t>>* support) const;
 
  private:
+  static constexpr std::size_t kMaxSamples = 12;  ///< observations of a landmark whose descriptors are remembered
   struct Sample {
     Descriptor descriptor;
     float angle_rad = 0;
   };
   struct Fused {
-    Eigen::Vector3d position_m;                                  ///< current estimate
-    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();       ///< sum of the observations' inverse covariances
+    Eigen::Vector3d position_m;                             ///< current estimate
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< sum of the observations' inverse covariances
     Eigen::Vector3d information_vector = Eigen::Vector3d::Zero();
-    Eigen::Vector3d origin_m;                                    ///< first point: sums below are relative to it
+    Eigen::Vector3d origin_m;  ///< first point: sums below are relative to it
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     double sum_squared = 0;
     float min_reference_m = 0, max_reference_m = 0;
     std::uint32_t num_observations = 0;
-    std::vector<Descriptor> appearances;   ///< what new features are compared with
-    std::vector<Sample> samples;           ///< an even sample of the observations, for the final choice
+    std::vector<Descriptor> appearances;  ///< what new features are compared with
+    std::vector<Sample> samples;          ///< an even sample of the observations, for the final choice
   };
   struct Pair {
     int distance;
@@ -114,7 +115,7 @@ class LandmarkFusion {
   Intrinsics color_;
   DepthNoise depth_noise_;
   FusionOptions options_;
-  std::vector<float> scale_;   ///< per level
+  std::vector<float> scale_;  ///< per level
   FeatureGrid grid_;
   std::vector<Fused> landmarks_;
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> voxels_;  ///< looked up only, never iterated

@@ -17,12 +17,12 @@
 namespace camloc {
 namespace {
 
-constexpr std::size_t kMaxKeyframes = 65535;   // InvertedEntry::keyframe
+constexpr std::size_t kMaxKeyframes = 65535;  // InvertedEntry::keyframe
 constexpr int kMaxBudgetRounds = 24;
 constexpr std::uint32_t kMaxKeyframeGain = 200;
 // What a landmark costs in the file: its record, one descriptor, its share of words and lists.
-constexpr double kRecordBytes = 16, kDescriptorBytes = 32, kListEntryBytes = 1.2, kInvertedEntryBytes = 3, kKeyframeBytes = 40, kFixedBytes = 2048,
-                 kMinWordBytes = 64 * 36;
+constexpr double kRecordBytes = 16, kDescriptorBytes = 32, kListEntryBytes = 1.2, kInvertedEntryBytes = 3, kKeyframeBytes = 40,
+                 kFixedBytes = 2048, kMinWordBytes = 64 * 36;
 
 std::string size_text(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
 
@@ -74,11 +74,12 @@ struct MapBuilder::Impl {
   PoseConsistency consistency;
   MapBuildReport report;
 
-  std::vector<MapLandmark> all;                      ///< every fused landmark, set by finish()
-  std::vector<std::vector<std::uint32_t>> support;   ///< observations behind each of their descriptors
+  std::vector<MapLandmark> all;                     ///< every fused landmark, set by finish()
+  std::vector<std::vector<std::uint32_t>> support;  ///< observations behind each of their descriptors
 };
 
-MapBuilder::MapBuilder(const RgbdCamera& camera, const MapBuildOptions& options) : impl_(std::make_unique<Impl>(camera, options)) {}
+MapBuilder::MapBuilder(const RgbdCamera& camera, const MapBuildOptions& options)
+    : impl_(std::make_unique<Impl>(camera, options)) {}
 MapBuilder::~MapBuilder() = default;
 
 Status MapBuilder::add_frame(const Frame& frame, const Rigid3& T_map_camera) {
@@ -103,15 +104,16 @@ MapBuildReport MapBuilder::progress() const {
 Status MapBuilder::Impl::check(const Frame& frame, const Rigid3& T_map_camera) const {
   const std::string what = "frame " + std::to_string(frame.sequence);
   if (frame.gray.width != camera.color.width || frame.gray.height != camera.color.height || frame.gray.empty()) {
-    return {ErrorCode::kInvalid, what + ": colour image is " + size_text(frame.gray.width, frame.gray.height) + " but camera '" + camera.name + "' has " +
-                                     size_text(camera.color.width, camera.color.height)};
+    return {ErrorCode::kInvalid, what + ": colour image is " + size_text(frame.gray.width, frame.gray.height) + " but camera '" +
+                                     camera.name + "' has " + size_text(camera.color.width, camera.color.height)};
   }
   if (frame.depth.empty()) return {ErrorCode::kInvalid, what + ": no depth image"};
   if (frame.depth.width != camera.depth.width || frame.depth.height != camera.depth.height) {
-    return {ErrorCode::kInvalid, what + ": depth image is " + size_text(frame.depth.width, frame.depth.height) + " but camera '" + camera.name + "' has " +
-                                     size_text(camera.depth.width, camera.depth.height)};
+    return {ErrorCode::kInvalid, what + ": depth image is " + size_text(frame.depth.width, frame.depth.height) + " but camera '" +
+                                     camera.name + "' has " + size_text(camera.depth.width, camera.depth.height)};
   }
-  if (!T_map_camera.translation.allFinite() || !T_map_camera.rotation.coeffs().allFinite()) return {ErrorCode::kInvalid, what + ": pose is not finite"};
+  if (!T_map_camera.translation.allFinite() || !T_map_camera.rotation.coeffs().allFinite())
+    return {ErrorCode::kInvalid, what + ": pose is not finite"};
   return Status::ok();
 }
 
@@ -195,7 +197,8 @@ void MapBuilder::Impl::keep_descriptors(const std::vector<std::uint32_t>& kept, 
   const auto n = static_cast<double>(kept.size());
   const double words = options.num_words > 0 ? options.num_words : default_num_words(kept.size());
   double bytes = kFixedBytes + n * (kRecordBytes + kDescriptorBytes) + words * (kDescriptorBytes + 8) +
-                 static_cast<double>(entries) * (kListEntryBytes + kInvertedEntryBytes) + static_cast<double>(map->keyframes.size()) * kKeyframeBytes;
+                 static_cast<double>(entries) * (kListEntryBytes + kInvertedEntryBytes) +
+                 static_cast<double>(map->keyframes.size()) * kKeyframeBytes;
   for (const Further& f : further) {
     bytes += kDescriptorBytes + kInvertedEntryBytes;
     if (f.support < 2 || bytes > options.max_bytes_per_landmark * n) break;
@@ -205,8 +208,10 @@ void MapBuilder::Impl::keep_descriptors(const std::vector<std::uint32_t>& kept, 
 
 void MapBuilder::Impl::add_words(MapData* map) const {
   std::vector<Descriptor> descriptors;
-  for (const MapLandmark& landmark : map->landmarks) descriptors.insert(descriptors.end(), landmark.descriptors.begin(), landmark.descriptors.end());
-  map->words = train_vocabulary(descriptors, options.num_words > 0 ? options.num_words : default_num_words(map->landmarks.size()));
+  for (const MapLandmark& landmark : map->landmarks)
+    descriptors.insert(descriptors.end(), landmark.descriptors.begin(), landmark.descriptors.end());
+  map->words =
+      train_vocabulary(descriptors, options.num_words > 0 ? options.num_words : default_num_words(map->landmarks.size()));
   build_inverted_file(map);
 }
 
@@ -216,7 +221,8 @@ void MapBuilder::Impl::count(const MapData& map, std::uint64_t file_bytes, std::
   report.num_landmarks = static_cast<std::uint32_t>(map.landmarks.size());
   report.num_keyframes = static_cast<std::uint32_t>(map.keyframes.size());
   report.num_descriptors = 0;
-  for (const MapLandmark& landmark : map.landmarks) report.num_descriptors += static_cast<std::uint32_t>(landmark.descriptors.size());
+  for (const MapLandmark& landmark : map.landmarks)
+    report.num_descriptors += static_cast<std::uint32_t>(landmark.descriptors.size());
   report.num_words = static_cast<std::uint32_t>(map.words.size());
   report.file_bytes = file_bytes;
   report.num_consistency_pairs = num_pairs;
@@ -229,16 +235,19 @@ Result<MapData> MapBuilder::finish(MapBuildReport* report) {
   const PoseConsistencyEstimate consistency = self.consistency.estimate();
   std::uint32_t max_landmarks = 0;
   auto min_gain = static_cast<std::uint32_t>(std::max(options.min_keyframe_gain, 1));
-  if (options.max_bytes > 0) max_landmarks = static_cast<std::uint32_t>(static_cast<double>(options.max_bytes) / options.max_bytes_per_landmark) + 1;
+  if (options.max_bytes > 0)
+    max_landmarks = static_cast<std::uint32_t>(static_cast<double>(options.max_bytes) / options.max_bytes_per_landmark) + 1;
   std::vector<std::uint32_t> kept = self.useful_landmarks(max_landmarks);
   for (int round = 0; round < kMaxBudgetRounds; ++round) {
     MapData map = self.select(kept, min_gain);
     if (map.landmarks.empty()) {
-      return {ErrorCode::kInvalid, options.max_bytes > 0
-                                       ? "map: no landmark fits into " + std::to_string(options.max_bytes) + " bytes; raise the byte budget"
-                                       : "map: no landmark is left; do the frames show textured surfaces with depth, and are the poses right?"};
+      return {ErrorCode::kInvalid,
+              options.max_bytes > 0
+                  ? "map: no landmark fits into " + std::to_string(options.max_bytes) + " bytes; raise the byte budget"
+                  : "map: no landmark is left; do the frames show textured surfaces with depth, and are the poses right?"};
     }
-    if (map.keyframes.size() > kMaxKeyframes) return {ErrorCode::kUnsupported, "map: more than 65535 keyframes; select fewer frames"};
+    if (map.keyframes.size() > kMaxKeyframes)
+      return {ErrorCode::kUnsupported, "map: more than 65535 keyframes; select fewer frames"};
     self.add_words(&map);
     map.pose_sigma_m = consistency.sigma_m;
     map.pose_sigma_rad = consistency.sigma_rad;
@@ -250,7 +259,8 @@ Result<MapData> MapBuilder::finish(MapBuildReport* report) {
     if (has_long_lists && min_gain < kMaxKeyframeGain) {
       min_gain += min_gain / 2 + 1;
     } else if (options.max_bytes > 0 && bytes.value().size() > options.max_bytes) {
-      max_landmarks = static_cast<std::uint32_t>(0.98 * static_cast<double>(options.max_bytes) / size * static_cast<double>(kept.size()));
+      max_landmarks =
+          static_cast<std::uint32_t>(0.98 * static_cast<double>(options.max_bytes) / size * static_cast<double>(kept.size()));
       if (max_landmarks == 0) break;
       kept = self.useful_landmarks(max_landmarks);
     } else {
@@ -259,7 +269,8 @@ Result<MapData> MapBuilder::finish(MapBuildReport* report) {
       return map;
     }
   }
-  return {ErrorCode::kInvalid, "map: " + std::to_string(options.max_bytes) + " bytes are not enough for a map of these frames; raise the byte budget"};
+  return {ErrorCode::kInvalid,
+          "map: " + std::to_string(options.max_bytes) + " bytes are not enough for a map of these frames; raise the byte budget"};
 }
 
 }  // namespace camloc

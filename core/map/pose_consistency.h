@@ -20,13 +20,13 @@ struct PoseConsistencyOptions {
   std::uint32_t min_view_gap = 30;                      ///< views between them, in the order they were added; less in short maps
   std::uint32_t max_pairs = 80;
   std::uint32_t max_attempts = 240;
-  std::uint32_t max_views = 256;                        ///< kept in memory, evenly spread over the sequence
+  std::uint32_t max_views = 256;  ///< kept in memory, evenly spread over the sequence
   int min_inliers = 40;
   int max_features = 2000;
 };
 
 struct PoseConsistencyEstimate {
-  double sigma_m = 0, sigma_rad = 0;   ///< one standard deviation per axis; 0 when there is no pair to tell from
+  double sigma_m = 0, sigma_rad = 0;  ///< one standard deviation per axis; 0 when there is no pair to tell from
   std::uint32_t num_pairs = 0;
 };
 

@@ -56,7 +56,8 @@ std::vector<Descriptor> draw_seeds(std::span<const Descriptor> descriptors, std:
 }
 
 // Bit-wise majority of each cluster; a tie keeps the old bit, an empty cluster its old centre.
-void move_to_majority(std::span<const Descriptor> descriptors, std::span<const NearestDescriptor> nearest, std::vector<Descriptor>* words) {
+void move_to_majority(std::span<const Descriptor> descriptors, std::span<const NearestDescriptor> nearest,
+                      std::vector<Descriptor>* words) {
   std::vector<std::array<std::int32_t, 256>> balance(words->size());
   for (std::size_t i = 0; i < descriptors.size(); ++i) {
     auto& sums = balance[nearest[i].index];
@@ -137,7 +138,8 @@ void build_inverted_file(MapData* map) {
     }
     for (const auto& [word, weight] : frequency[k]) {
       const long scaled = std::lround(255.0 * weight / std::sqrt(sum_squared));
-      map->inverted_file[word].push_back({static_cast<std::uint16_t>(k), static_cast<std::uint8_t>(std::clamp(scaled, 1L, 255L))});
+      map->inverted_file[word].push_back(
+          {static_cast<std::uint16_t>(k), static_cast<std::uint8_t>(std::clamp(scaled, 1L, 255L))});
     }
   }
 }

@@ -41,11 +41,13 @@ struct Point {
 std::vector<Point> random_points(int count, std::mt19937_64& random) {
   std::uniform_real_distribution<double> x(-0.9, 0.9), y(-0.6, 0.6), z(1.8, 3.0);
   std::vector<Point> points;
-  for (int i = 0; i < count; ++i) points.push_back({{x(random), y(random), z(random)}, {{random(), random(), random(), random()}}});
+  for (int i = 0; i < count; ++i)
+    points.push_back({{x(random), y(random), z(random)}, {{random(), random(), random(), random()}}});
   return points;
 }
 
-void add_feature(const Intrinsics& k, const Eigen::Vector2d& pixel, double depth_m, int level, const Descriptor& descriptor, ViewFeatures* view) {
+void add_feature(const Intrinsics& k, const Eigen::Vector2d& pixel, double depth_m, int level, const Descriptor& descriptor,
+                 ViewFeatures* view) {
   Keypoint keypoint;
   keypoint.u = static_cast<float>(pixel.x());
   keypoint.v = static_cast<float>(pixel.y());
@@ -71,9 +73,7 @@ ViewFeatures see(const std::vector<Point>& points, const Rigid3& T_map_camera, d
   return view;
 }
 
-Rigid3 pose(double x, double y, double yaw) {
-  return {exp_so3({0, yaw, 0}), {x, y, 0}};
-}
+Rigid3 pose(double x, double y, double yaw) { return {exp_so3({0, yaw, 0}), {x, y, 0}}; }
 
 TEST(LandmarkFusion, OnePointIsOneLandmark) {
   std::mt19937_64 random(11);
@@ -161,7 +161,8 @@ TEST(LandmarkFusion, SameCornerOnOtherLevelsIsOneLandmark) {
   FusionCounts counts;
   for (int i = 0; i < 2; ++i) {
     ViewFeatures view;
-    for (int level = 0; level < 3; ++level) add_feature(test_camera(), {320 + 0.4 * level, 240}, 2, level, flipped(descriptor, 10, random), &view);
+    for (int level = 0; level < 3; ++level)
+      add_feature(test_camera(), {320 + 0.4 * level, 240}, 2, level, flipped(descriptor, 10, random), &view);
     counts = fusion.add_view(view);
   }
   EXPECT_EQ(fusion.num_landmarks(), 1U);

@@ -45,11 +45,13 @@ class Wall {
     for (int i = 0; i < 4000; ++i) {
       const unsigned x0 = below(kSide), y0 = below(kSide), w = 6 + below(30), h = 6 + below(30);
       const auto value = static_cast<std::uint8_t>(below(256));
-      for (unsigned y = y0; y < std::min(y0 + h, kSide); ++y) std::fill_n(grey_.begin() + y * kSide + x0, std::min(w, kSide - x0), value);
+      for (unsigned y = y0; y < std::min(y0 + h, kSide); ++y)
+        std::fill_n(grey_.begin() + y * kSide + x0, std::min(w, kSide - x0), value);
     }
   }
   [[nodiscard]] double at(double x_m, double y_m) const {
-    const double u = std::clamp((x_m + 2.0) / 4.0 * (kSide - 2), 0.0, kSide - 2.001), v = std::clamp((y_m + 2.0) / 4.0 * (kSide - 2), 0.0, kSide - 2.001);
+    const double u = std::clamp((x_m + 2.0) / 4.0 * (kSide - 2), 0.0, kSide - 2.001),
+                 v = std::clamp((y_m + 2.0) / 4.0 * (kSide - 2), 0.0, kSide - 2.001);
     const auto column = static_cast<unsigned>(u), row = static_cast<unsigned>(v);
     const double fu = u - column, fv = v - row;
     const std::uint8_t* p = grey_.data() + row * kSide + column;
@@ -80,7 +82,9 @@ FrameBuffer render(const Wall& wall, const RgbdCamera& camera, const Rigid3& T_m
 
 std::vector<Rigid3> walk() {
   std::vector<Rigid3> poses;
-  for (int i = 0; i < 12; ++i) poses.push_back({exp_so3({0.01 * (i % 3), 0.02 * (i % 5) - 0.04, 0.01 * i}), {0.09 * i - 0.5, 0.03 * (i % 4), 0.02 * (i % 3)}});
+  for (int i = 0; i < 12; ++i)
+    poses.push_back(
+        {exp_so3({0.01 * (i % 3), 0.02 * (i % 5) - 0.04, 0.01 * i}), {0.09 * i - 0.5, 0.03 * (i % 4), 0.02 * (i % 3)}});
   return poses;
 }
 

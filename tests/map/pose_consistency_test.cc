@@ -34,7 +34,9 @@ PoseConsistencyEstimate estimate_with(double error_m, double error_rad) {
   }
   const RgbdCamera camera = test_camera();
   PoseConsistency consistency(camera, {});
-  const auto noise3 = [&](double sigma) { return Eigen::Vector3d(sigma * Eigen::Vector3d(normal(random), normal(random), normal(random))); };
+  const auto noise3 = [&](double sigma) {
+    return Eigen::Vector3d(sigma * Eigen::Vector3d(normal(random), normal(random), normal(random)));
+  };
   for (int i = 0; i < 120; ++i) {
     const double along = i < 60 ? 0.02 * i : 0.02 * (120 - i) + 0.15;
     const Rigid3 T_map_camera{exp_so3({0.002 * i, 0, 0.001 * i}), {along, 0.03 * (i % 5), 0}};

@@ -38,9 +38,10 @@ std::string format_table(const BuildSummary& s) {
   const MapBuildReport& b = s.build;
   std::string text;
   append(&text, "%-22s%s\n", "map", s.map_path.c_str());
-  append(&text, "%-22s%u of %llu recorded, %llu selected\n", "frames used", b.num_frames, count(s.num_recorded), count(s.num_selected));
-  append(&text, "%-22s%llu without pose, %llu without depth, %llu broken\n", "frames skipped", count(s.num_without_pose), count(s.num_without_depth),
-         count(s.num_broken));
+  append(&text, "%-22s%u of %llu recorded, %llu selected\n", "frames used", b.num_frames, count(s.num_recorded),
+         count(s.num_selected));
+  append(&text, "%-22s%llu without pose, %llu without depth, %llu broken\n", "frames skipped", count(s.num_without_pose),
+         count(s.num_without_depth), count(s.num_broken));
   append(&text, "%-22s%llu\n", "observations", count(b.num_observations));
   append(&text, "%-22s%u of %u\n", "landmarks kept", b.num_landmarks, b.num_landmarks_before);
   append(&text, "%-22s%u\n", "descriptors", b.num_descriptors);
@@ -48,8 +49,8 @@ std::string format_table(const BuildSummary& s) {
   append(&text, "%-22s%u\n", "words", b.num_words);
   append(&text, "%-22s%llu bytes, %.1f a landmark\n", "size", count(b.file_bytes), bytes_per_landmark(s));
   if (b.num_consistency_pairs > 0) {
-    append(&text, "%-22s%.1f cm, %.2f deg per axis between views (%u pairs)\n", "pose inconsistency", 100 * s.pose_sigma_m, degrees(s.pose_sigma_rad),
-           b.num_consistency_pairs);
+    append(&text, "%-22s%.1f cm, %.2f deg per axis between views (%u pairs)\n", "pose inconsistency", 100 * s.pose_sigma_m,
+           degrees(s.pose_sigma_rad), b.num_consistency_pairs);
   } else {
     append(&text, "%-22sunknown: no two views see the same place at different times\n", "pose inconsistency");
   }
@@ -63,8 +64,8 @@ std::string format_json(const BuildSummary& s) {
   json["map"] = s.map_path;
   json["sequence"] = s.sequence;
   json["camera"] = s.camera;
-  json["frames"] = {{"recorded", s.num_recorded},           {"selected", s.num_selected},         {"used", b.num_frames},
-                    {"without_pose", s.num_without_pose},   {"without_depth", s.num_without_depth}, {"broken", s.num_broken}};
+  json["frames"] = {{"recorded", s.num_recorded},         {"selected", s.num_selected},           {"used", b.num_frames},
+                    {"without_pose", s.num_without_pose}, {"without_depth", s.num_without_depth}, {"broken", s.num_broken}};
   json["observations"] = b.num_observations;
   json["landmarks"] = {{"before", b.num_landmarks_before}, {"kept", b.num_landmarks}};
   json["descriptors"] = b.num_descriptors;
@@ -72,13 +73,16 @@ std::string format_json(const BuildSummary& s) {
   json["words"] = b.num_words;
   json["bytes"] = b.file_bytes;
   json["bytes_per_landmark"] = bytes_per_landmark(s);
-  json["pose_consistency"] = {{"pairs", b.num_consistency_pairs}, {"sigma_m", s.pose_sigma_m}, {"sigma_deg", degrees(s.pose_sigma_rad)}};
+  json["pose_consistency"] = {
+      {"pairs", b.num_consistency_pairs}, {"sigma_m", s.pose_sigma_m}, {"sigma_deg", degrees(s.pose_sigma_rad)}};
   json["seconds"] = s.seconds;
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 ProgressLine::ProgressLine(std::uint64_t num_frames)
-    : is_terminal_(isatty(STDERR_FILENO) == 1), num_frames_(std::max<std::uint64_t>(num_frames, 1)), start_(std::chrono::steady_clock::now()) {}
+    : is_terminal_(isatty(STDERR_FILENO) == 1),
+      num_frames_(std::max<std::uint64_t>(num_frames, 1)),
+      start_(std::chrono::steady_clock::now()) {}
 
 ProgressLine::~ProgressLine() {
   if (is_terminal_) std::fputs("\r\033[K", stderr);
@@ -92,8 +96,10 @@ void ProgressLine::show(std::uint64_t frame, const MapBuildReport& report) {
   const double elapsed_s = std::chrono::duration<double>(now - start_).count();
   const double left_s = done > 0 ? elapsed_s * (1 - done) / done : 0;
   const int filled = std::clamp(static_cast<int>(done * kBarWidth), 0, kBarWidth);
-  std::fprintf(stderr, "\r\033[K[%s%s] frame %llu/%llu  %u landmarks  %.0f s left", std::string(static_cast<std::size_t>(filled), '#').c_str(),
-               std::string(static_cast<std::size_t>(kBarWidth - filled), '.').c_str(), count(frame), count(num_frames_), report.num_landmarks_before, left_s);
+  std::fprintf(stderr, "\r\033[K[%s%s] frame %llu/%llu  %u landmarks  %.0f s left",
+               std::string(static_cast<std::size_t>(filled), '#').c_str(),
+               std::string(static_cast<std::size_t>(kBarWidth - filled), '.').c_str(), count(frame), count(num_frames_),
+               report.num_landmarks_before, left_s);
   std::fflush(stderr);
 }
 

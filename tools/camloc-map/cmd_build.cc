@@ -65,7 +65,8 @@ Status interrupted_status(const std::string& map_path) {
 
 Status check_output(const std::string& map_path) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(map_path, ignored)) return {ErrorCode::kInvalid, "--out " + map_path + ": is a folder; give a file name"};
+  if (std::filesystem::is_directory(map_path, ignored))
+    return {ErrorCode::kInvalid, "--out " + map_path + ": is a folder; give a file name"};
   const auto folder = std::filesystem::path(map_path).parent_path();
   if (!folder.empty() && !std::filesystem::is_directory(folder, ignored)) {
     return {ErrorCode::kInvalid, "--out " + map_path + ": folder " + folder.string() + " does not exist"};
@@ -136,7 +137,9 @@ int run(BuildArguments arguments) {
   summary.num_recorded = frames.value().num_recorded;
   summary.num_selected = frames.value().num_selected;
   summary.num_without_pose = frames.value().num_without_pose;
-  if (const Status built = build(arguments, camera.value(), frames.value(), &summary); !built.is_ok()) return report_error(built, 1);
+  if (const Status built = build(arguments, camera.value(), frames.value(), &summary); !built.is_ok()) {
+    return report_error(built, built.code() == ErrorCode::kInvalid ? 2 : 1);
+  }
   const std::string text = arguments.is_json ? format_json(summary) : format_table(summary);
   return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0 ? 0 : 1;
 }
@@ -147,19 +150,28 @@ void add_build_command(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<BuildArguments>();
   CLI::App* command = app.add_subcommand("build", "Makes a map file from a recorded RGB-D sequence with poses.");
   command->footer(kFooter);
-  command->add_option("--sequence", arguments->frames.sequence, "Recording: replay://DIR or a folder, TUM RGB-D or 7-Scenes layout")->required();
+  command
+      ->add_option("--sequence", arguments->frames.sequence, "Recording: replay://DIR or a folder, TUM RGB-D or 7-Scenes layout")
+      ->required();
   command->add_option("--camera", arguments->camera_path, "Calibration: our TOML, or YAML of kalibr, ROS, OpenCV")->required();
-  command->add_option("--poses", arguments->frames.poses, "'embedded' (those of the recording) or a trajectory file in TUM format")->required();
+  command
+      ->add_option("--poses", arguments->frames.poses, "'embedded' (those of the recording) or a trajectory file in TUM format")
+      ->required();
   command->add_option("--out", arguments->map_path, "Map file to write; replaced only when the new one is complete")->required();
-  command->add_option("--frames", arguments->frames.include, "Frames to use: start:stop:step[,...], Python slices (default: all)");
+  command->add_option("--frames", arguments->frames.include,
+                      "Frames to use: start:stop:step[,...], Python slices (default: all)");
   command->add_option("--exclude", arguments->frames.exclude, "Frames to leave out, same notation");
-  command->add_option("--max-bytes", arguments->max_bytes, "Size limit of the file; the most useful landmarks are kept (accepts KB, MB)")
+  command
+      ->add_option("--max-bytes", arguments->max_bytes,
+                   "Size limit of the file; the most useful landmarks are kept (accepts KB, MB)")
       ->transform(CLI::AsSizeValue(true));
-  command->add_option("--name", arguments->name, "Name of the map, at most 63 bytes (default: the folder's)")->check([](const std::string& name) {
-    return name.size() <= 63 ? std::string() : std::string("longer than 63 bytes");
-  });
-  const std::map<std::string, PoseCamera> cameras{{"auto", PoseCamera::kAuto}, {"color", PoseCamera::kColor}, {"depth", PoseCamera::kDepth}};
-  command->add_option("--poses-of", arguments->frames.pose_camera, "Camera the poses belong to (default auto: embedded ones as the camera file says, a file's: color)")
+  command->add_option("--name", arguments->name, "Name of the map, at most 63 bytes (default: the folder's)")
+      ->check([](const std::string& name) { return name.size() <= 63 ? std::string() : std::string("longer than 63 bytes"); });
+  const std::map<std::string, PoseCamera> cameras{
+      {"auto", PoseCamera::kAuto}, {"color", PoseCamera::kColor}, {"depth", PoseCamera::kDepth}};
+  command
+      ->add_option("--poses-of", arguments->frames.pose_camera,
+                   "Camera the poses belong to (default auto: embedded ones as the camera file says, a file's: color)")
       ->transform(CLI::CheckedTransformer(cameras));
   command->add_flag("--json", arguments->is_json, "Print the summary as JSON");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

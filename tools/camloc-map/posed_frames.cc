@@ -78,8 +78,9 @@ Result<PosedFrames> find_posed_frames(const PosedFramesRequest& request, const R
     }
   }
   if (result.T_map_camera_of_frame.empty()) {
-    return {ErrorCode::kInvalid, request.sequence + ": none of the " + std::to_string(result.num_selected) + " selected frames has a pose in " +
-                                     (are_embedded ? std::string("the recording") : request.poses) + "; check --frames and the stamps of --poses"};
+    return {ErrorCode::kInvalid,
+            request.sequence + ": none of the " + std::to_string(result.num_selected) + " selected frames has a pose in " +
+                (are_embedded ? std::string("the recording") : request.poses) + "; check --frames and the stamps of --poses"};
   }
   result.url = "replay://" + folder.value() + "?frames=" + slices_of(result.T_map_camera_of_frame);
   return result;

@@ -17,16 +17,17 @@ namespace camloc::map_tool {
 enum class PoseCamera { kAuto, kColor, kDepth };
 
 struct PosedFramesRequest {
-  std::string sequence;              ///< replay://DIR or DIR
-  std::string poses = "embedded";    ///< or a TUM trajectory file
-  std::string include, exclude;      ///< Python slices
-  PoseCamera pose_camera = PoseCamera::kAuto;  ///< whose poses they are; kAuto: embedded ones as the camera file says, files colour
+  std::string sequence;            ///< replay://DIR or DIR
+  std::string poses = "embedded";  ///< or a TUM trajectory file
+  std::string include, exclude;    ///< Python slices
+  PoseCamera pose_camera =
+      PoseCamera::kAuto;  ///< whose poses they are; kAuto: embedded ones as the camera file says, files colour
 };
 
 struct PosedFrames {
   std::string folder;
-  std::string url;                                       ///< for open_frame_source: only frames with a pose
-  std::map<std::uint64_t, Rigid3> T_map_camera_of_frame; ///< by index in the whole recording
+  std::string url;                                        ///< for open_frame_source: only frames with a pose
+  std::map<std::uint64_t, Rigid3> T_map_camera_of_frame;  ///< by index in the whole recording
   std::uint64_t num_recorded = 0, num_selected = 0, num_without_pose = 0;
 };
 
