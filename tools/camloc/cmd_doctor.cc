@@ -114,7 +114,7 @@ std::string known_schemes() {
 }
 
 /// `daemon` is the answer of a running camlocd, which then owns the camera.
-Check check_source(const std::string& url, const std::optional<nlohmann::json>& daemon) {
+Check check_source(const std::string& url, const std::optional<nlohmann::ordered_json>& daemon) {
   if (url.empty()) return {"camera", Level::kFailure, "none configured", "set source.url; this build knows " + known_schemes()};
   if (daemon) {
     const bool has_camera = daemon->value("state", std::string()) != "NO_CAMERA";
@@ -134,7 +134,7 @@ Check check_source(const std::string& url, const std::optional<nlohmann::json>& 
           ""};
 }
 
-Check check_daemon(const std::string& socket_path, std::optional<nlohmann::json>* daemon) {
+Check check_daemon(const std::string& socket_path, std::optional<nlohmann::ordered_json>* daemon) {
   auto answer = control_request(socket_path, "status", std::chrono::seconds(3));
   if (answer) {
     *daemon = *answer;
@@ -187,7 +187,7 @@ std::vector<Check> examine(const DoctorOptions& options) {
   settings.lcm_url = options.lcm_url.value_or(settings.lcm_url);
   settings.socket_path = options.socket_path.value_or(settings.socket_path);
 
-  std::optional<nlohmann::json> daemon;
+  std::optional<nlohmann::ordered_json> daemon;
   checks.push_back(check_daemon(settings.socket_path, &daemon));
   checks.push_back(check_map(settings.map_path));
   checks.push_back(check_source(settings.source_url, daemon));

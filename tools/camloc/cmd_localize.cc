@@ -58,6 +58,7 @@ Json record_json(const Localization& result) {
           {"quality", result.quality},
           {"tracked", result.is_tracked},
           {"features", result.num_features},
+          {"visible", result.num_visible},
           {"matches", result.num_matches},
           {"inliers", result.num_inliers},
           {"inlier_ratio", result.inlier_ratio},

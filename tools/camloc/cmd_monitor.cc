@@ -65,8 +65,7 @@ class Monitor {
   void on_status(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
     status_t status;
     if (status.decode(buffer->data, 0, static_cast<int>(buffer->data_size)) < 0) return refuse(channel);
-    const bool is_news = !state_.status || state_.status->state_text != status.state_text ||
-                         state_.status->map_id != status.map_id ||
+    const bool is_news = !state_.status || state_.status->state != status.state || state_.status->map_id != status.map_id ||
                          state_.status->is_calibration_suspect != status.is_calibration_suspect;
     if (options_.is_json) {
       std::printf("%s\n", dump(status_json(status)).c_str());

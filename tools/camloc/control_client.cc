@@ -53,8 +53,8 @@ Result<std::string> read_line(int fd, std::chrono::steady_clock::time_point dead
 
 }  // namespace
 
-Result<nlohmann::json> control_request(const std::string& socket_path, const std::string& command,
-                                       std::chrono::milliseconds timeout) {
+Result<nlohmann::ordered_json> control_request(const std::string& socket_path, const std::string& command,
+                                               std::chrono::milliseconds timeout) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   if (socket_path.empty() || socket_path.size() >= sizeof(address.sun_path)) {
@@ -73,7 +73,7 @@ Result<nlohmann::json> control_request(const std::string& socket_path, const std
   }
   auto answer = read_line(fd.get(), deadline);
   if (!answer) return answer.status().with_context(socket_path);
-  auto json = nlohmann::json::parse(*answer, nullptr, false);
+  auto json = nlohmann::ordered_json::parse(*answer, nullptr, false);
   if (!json.is_object()) return {ErrorCode::kCorrupt, socket_path + ": the answer is not a JSON object; is this camlocd?"};
   return json;
 }

@@ -14,9 +14,9 @@ namespace camloc::tools {
 
 inline constexpr const char* kDefaultControlSocket = "/run/camloc/control.sock";
 
-/// Sends `command` and waits for the answer, a JSON object. kUnavailable: nobody listens; kIo: not permitted; kTimeout;
-/// kCorrupt: the answer is not a JSON object. An answer with "ok": false is a result, not an error.
-[[nodiscard]] Result<nlohmann::json> control_request(const std::string& socket_path, const std::string& command,
-                                                     std::chrono::milliseconds timeout);
+/// Sends `command` and waits for the answer, a JSON object whose keys keep their order. kUnavailable: nobody listens; kIo:
+/// not permitted; kTimeout; kCorrupt: the answer is not a JSON object. An answer with "ok": false is a result, no error.
+[[nodiscard]] Result<nlohmann::ordered_json> control_request(const std::string& socket_path, const std::string& command,
+                                                             std::chrono::milliseconds timeout);
 
 }  // namespace camloc::tools
