@@ -56,7 +56,7 @@ struct Localization {
   Matrix6d covariance = Matrix6d::Zero();  ///< of pose_error(): metres, radians, axes of `map`
   int quality = -1;              ///< 0..100, -1 when there is no pose
   bool is_tracked = false;       ///< found from the prediction, not by global search
-  std::uint32_t num_features = 0, num_matches = 0, num_inliers = 0;
+  std::uint32_t num_features = 0, num_visible = 0, num_matches = 0, num_inliers = 0;  ///< visible: landmarks that the pose puts in view
   double inlier_ratio = 0;
   double spread = 0;             ///< share of the image's 8 x 6 cells that hold an inlier
   double margin = 1;             ///< 1 - inliers of the best rival place / inliers

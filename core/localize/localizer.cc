@@ -146,6 +146,7 @@ const Localization& Localizer::finish(const Candidate& candidate) {
   const PoseHypothesis& hypothesis = candidate.hypothesis;
   result_.is_tracked = candidate.is_tracked;
   result_.num_features = static_cast<std::uint32_t>(observations_.size());
+  result_.num_visible = hypothesis.num_visible;
   result_.num_matches = hypothesis.num_matches;
   result_.num_inliers = hypothesis.num_inliers;
   result_.inlier_ratio = hypothesis.inlier_ratio();
