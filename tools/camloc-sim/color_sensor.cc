@@ -8,7 +8,7 @@
 namespace camloc::sim {
 namespace {
 
-constexpr float kTargetTone = 0.45F;
+constexpr float kTargetTone = 0.50F;
 
 float bilinear(const Image<float>& image, float x, float y) {
   x = std::clamp(x, 0.0F, static_cast<float>(image.width - 1) - 0.001F);

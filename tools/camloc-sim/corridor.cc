@@ -97,7 +97,7 @@ void decorate_wall(Scene* scene, const FloorPlan& plan, int side_index, bool is_
     const int num_slots = static_cast<int>((stretch.to_s - stretch.from_s) / kSlot);
     for (int slot = 0; slot < num_slots; ++slot) {
       const double s = stretch.from_s + (slot + 0.5) * kSlot;
-      const bool is_inner_corner = !is_outer && (s < kCorridorWidth + 1.0 || s > side.length - kCorridorWidth - 1.0);
+      const bool is_inner_corner = !is_outer && (s < kCorridorWidth + 0.75 || s > side.length - kCorridorWidth - 0.75);
       if (is_inner_corner || !is_free(doorways, s, 0.95)) continue;
       const std::uint32_t unique = hash32(options.seed, static_cast<std::uint32_t>(side_index * 1000 + slot * 2 + (is_outer ? 1 : 0)), static_cast<std::uint32_t>(stretch.from_s * 10));
       decorate_slot(scene, side, is_outer, stretch, slot, s, unique);

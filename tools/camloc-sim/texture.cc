@@ -30,7 +30,7 @@ float specks(const Point& p, float cell_m, float probability, float min_radius_m
 }
 
 float paint(const Skin& s, const Point& p) {
-  const float mottle = 0.020F * octaves(p.u, p.v, 0.8F, 3, 0.6F, s.seed, p.foot) + 0.012F * octaves(p.u, p.v, 0.02F, 2, 0.6F, s.seed + 7, p.foot);
+  const float mottle = 0.025F * octaves(p.u, p.v, 0.8F, 3, 0.6F, s.seed, p.foot) + 0.020F * octaves(p.u, p.v, 0.04F, 3, 0.7F, s.seed + 7, p.foot);
   const float low = clamp01(1.0F - p.v / 0.9F);  // feet, chairs and trolleys leave their marks low on the wall
   const float scuff = specks(p, 0.30F, 0.10F + 0.35F * low, 0.004F, 0.02F, s.seed + 11);
   return s.tone + mottle - 0.22F * scuff;

@@ -56,7 +56,7 @@ struct PathPoint {
 };
 
 std::vector<PathPoint> plan(const std::vector<Eigen::Vector2d>& path, const WalkStyle& style) {
-  const std::vector<Eigen::Vector2d> points = gaussian_filter(resample(path), 0.22 / kSpacing);
+  const std::vector<Eigen::Vector2d> points = gaussian_filter(resample(path), 0.30 / kSpacing);
   std::vector<double> heading(points.size(), 0.0), speed(points.size(), style.speed_m_s);
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Eigen::Vector2d step = points[i] - points[i - 1];

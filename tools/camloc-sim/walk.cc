@@ -77,7 +77,7 @@ std::vector<Eigen::Vector2d> other_day_path(const FloorPlan& plan) {
   path.corridor(3, 20.0);
   path.corridor(3, 26.0, 0.9);
   path.corner(3);
-  path.office(0, 0.15, false);
+  path.office(0, 0.15, true);
   path.corridor(0, 15.0, 0.85);
   path.corridor(0, 34.0);
   path.office(2, 0.1, true);
@@ -85,9 +85,9 @@ std::vector<Eigen::Vector2d> other_day_path(const FloorPlan& plan) {
   path.corridor(1, 9.0, 0.85);
   path.office(4, -0.1, true);
   path.corner(1);
-  path.office(5, 0.1, true);
+  path.office(5, 0.1, false);
   path.corridor(2, 15.0, 0.9);
-  path.office(6, -0.1, false);
+  path.office(6, -0.1, false);  // the other way round than when mapped
   path.corner(2);
   path.office(7, 0.1, false);
   path.corridor(3, 20.0);
@@ -100,11 +100,11 @@ std::vector<Eigen::Vector2d> other_day_path(const FloorPlan& plan) {
 
 std::vector<Eigen::Vector2d> small_path(const FloorPlan& plan, std::uint32_t day) {
   PathBuilder path(plan, day == 1 ? 1.1 : 1.3);
-  path.corridor(0, day == 1 ? 1.5 : 2.5);
-  path.office(0, day == 1 ? 0.0 : 0.12, day == 1);
+  path.corridor(0, day == 1 ? 3.5 : 4.2);
+  path.office(0, day == 1 ? 0.0 : 0.12, true);
   path.corner(0);
-  path.office(1, day == 1 ? 0.0 : -0.1, day != 1);
-  path.corridor(1, day == 1 ? 6.8 : 6.2);
+  if (day == 1) path.office(1, 0.0, false);
+  path.corridor(1, day == 1 ? 6.3 : 5.0);
   return path.take();
 }
 
@@ -137,7 +137,10 @@ std::vector<Eigen::Vector2d> walk_path(const FloorPlan& plan, SceneKind kind, st
 WalkStyle walk_style(SceneKind kind, std::uint32_t day, std::uint32_t seed) {
   WalkStyle style;
   style.seed = hash32(seed, day, 900);
-  if (kind == SceneKind::kSmall) style.speed_m_s = 1.0;
+  if (kind == SceneKind::kSmall) {
+    style.speed_m_s = 1.05;
+    style.turn_rate_rad_s = 0.95;
+  }
   if (day != 1) {
     style.height_m = 1.53;
     style.speed_m_s *= 0.95;
@@ -152,7 +155,7 @@ std::vector<Passer> plan_passers(const FloorPlan& plan, const Trajectory& trajec
   const std::uint32_t seed = hash32(options.seed, options.day, 950);
   std::vector<Passer> result;
   if (options.kind == SceneKind::kSmall) {
-    result.push_back(passer(plan, trajectory, 0, 9.0, -0.7, 0.5, 8.0, seed));
+    result.push_back(passer(plan, trajectory, 1, 1.5, -0.8, 0.5, 8.0, seed));
     result.push_back(passer(plan, trajectory, 1, 7.2, 0.0, 1.8, 1e6, seed + 1));
     return result;
   }
