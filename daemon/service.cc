@@ -16,6 +16,7 @@
 #include <cstring>
 #include <utility>
 
+#include "core/map/mapping_guard.h"
 #include "daemon/clock.h"
 #include "daemon/service_setup.h"
 
@@ -66,6 +67,7 @@ Status Service::start() {
     if (!control) return control.status();
     control_ = std::move(control).value();
   }
+  if (!install_mapping_guard()) return {ErrorCode::kIo, std::string("cannot handle SIGBUS: ") + std::strerror(errno)};
   signal_fd_ = open_signals();
   wake_fd_.reset(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC));
   const std::int64_t watchdog_ns = notifier_.watchdog_ns();
@@ -221,6 +223,7 @@ void Service::on_frame(const CapturedFrame& captured) {
     if (in_.config.publish_frame == "wcs") context.datum = &*map_.info().wcs;
   }
   publisher_.publish(localization, context);
+  board_.counters().poses_published = static_cast<std::int64_t>(publisher_.num_poses_published());
 
   ++num_processed_;
   last_frame_ns_ = monotonic_ns();
@@ -299,7 +302,6 @@ void Service::publish_status() {
     counters.frames_corrupt = static_cast<std::int64_t>(capture_->num_corrupt());
     counters.source_restarts = static_cast<std::int64_t>(capture_->num_restarts());
   }
-  counters.poses_published = static_cast<std::int64_t>(publisher_.num_poses_published());
   counters.reset_counter = std::int64_t{reset_offset_} + num_resets_;
   board_.stamp(monotonic_ns(), realtime_ns());
   publisher_.publish(board_.get());

@@ -38,8 +38,8 @@ class Service {
   explicit Service(ServiceInputs inputs);
   ~Service();
 
-  /// Takes the control socket, blocks the signals it handles, starts the capture thread. Errors: those of ControlSocket.
-  /// A missing camera, map or network is none.
+  /// Takes the control socket, guards against truncated maps, blocks the signals it handles, starts the capture thread.
+  /// Errors: those of ControlSocket. A missing camera, map or network is none.
   [[nodiscard]] Status start();
   /// Runs until there is an exit code: 0 asked to stop or, if so configured, recording over; 2 configuration.
   [[nodiscard]] int run();

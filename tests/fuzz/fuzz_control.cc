@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Any bytes as request: a command or an error, and the reply is one line of printable ASCII.
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "daemon/control_protocol.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view line(reinterpret_cast<const char*>(data), size);
+  const camloc::Result<camloc::ControlCommand> command = camloc::parse_control_request(line);
+  camloc::status_t status{};
+  status.state_text = line;
+  for (const std::string& reply : {camloc::control_reply(command.status()), camloc::control_reply(status)}) {
+    const bool is_printable = std::all_of(reply.begin(), reply.end(), [](char c) { return c >= 0x20 && c < 0x7f; });
+    if (!is_printable || reply.front() != '{' || reply.back() != '}') std::abort();
+  }
+  return 0;
+}

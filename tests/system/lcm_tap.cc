@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Prints what arrives over LCM, one line of "key=value" words a message, for the scenario tests.
+// Usage: lcm_tap SECONDS [MAX_POSES]   ends after that time, or that many poses
+#include <lcm/lcm-cpp.hpp>
+
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+
+#include "bot_core/pose_t.hpp"
+#include "camloc/pose_t.hpp"
+#include "camloc/status_t.hpp"
+
+namespace {
+
+struct Tap {
+  long num_poses = 0;
+
+  void on_pose(const lcm::ReceiveBuffer*, const std::string&, const camloc::pose_t* m) {
+    ++num_poses;
+    std::printf("pose seq=%lld state=%d reason=%d map=%016llx parent=%s reset=%d inliers=%d x=%.6f y=%.6f z=%.6f\n",
+                static_cast<long long>(m->sequence), m->state, m->reason, static_cast<unsigned long long>(m->map_id), m->parent_frame.c_str(),
+                m->reset_counter, m->num_inliers, m->pos[0], m->pos[1], m->pos[2]);
+  }
+  void on_status(const lcm::ReceiveBuffer*, const std::string&, const camloc::status_t* m) {
+    std::printf("status state=%d received=%lld dropped=%lld published=%lld rss=%lld reloads=%lld failures=%lld text=%s\n", m->state,
+                static_cast<long long>(m->frames_received), static_cast<long long>(m->frames_dropped), static_cast<long long>(m->poses_published),
+                static_cast<long long>(m->rss_bytes), static_cast<long long>(m->map_reloads), static_cast<long long>(m->map_reload_failures),
+                m->state_text.c_str());
+  }
+  void on_bot_core(const lcm::ReceiveBuffer*, const std::string&, const bot_core::pose_t* m) {
+    std::printf("bot_core utime=%lld x=%.6f\n", static_cast<long long>(m->utime), m->pos[0]);
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) return 2;
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  const double seconds = std::atof(argv[1]);
+  const long max_poses = argc > 2 ? std::atol(argv[2]) : 0;
+  lcm::LCM lcm("udpm://239.255.76.67:7667?ttl=0");
+  if (!lcm.good()) return 1;
+  Tap tap;
+  lcm.subscribe("CAMLOC_POSE", &Tap::on_pose, &tap)->setQueueCapacity(1000);
+  lcm.subscribe("CAMLOC_STATUS", &Tap::on_status, &tap);
+  lcm.subscribe("POSE", &Tap::on_bot_core, &tap)->setQueueCapacity(1000);
+  std::printf("ready\n");
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (std::chrono::steady_clock::now() < end && (max_poses == 0 || tap.num_poses < max_poses)) lcm.handleTimeout(50);
+  return 0;
+}
