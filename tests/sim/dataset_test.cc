@@ -85,9 +85,7 @@ TEST_F(Dataset, IsReadableAsAnyOtherSequence) {
     ASSERT_TRUE(poses.is_ok()) << poses.status().message();
     for (std::size_t i = 0; i < num_frames; ++i) {
       EXPECT_FALSE(sequence->frames[i].depth_path.empty());
-      if (i > 0) {
-        EXPECT_EQ(sequence->frames[i].stamp_ns - sequence->frames[i - 1].stamp_ns, 100'000'000);
-      }
+      if (i > 0) { EXPECT_EQ(sequence->frames[i].stamp_ns - sequence->frames[i - 1].stamp_ns, 100'000'000); }
       ASSERT_TRUE((*poses)[i].has_value());
       const Vector6d error = pose_error(world.trajectory.pose(0.1 * static_cast<double>(i)), *(*poses)[i]);
       EXPECT_LT(error.norm(), 1e-6);
@@ -147,7 +145,8 @@ TEST_F(Dataset, LidarPointsLieOnStaticSurfaces) {
     for (const Surface& s : scene.surfaces) {
       const Eigen::Vector3d offset = p - s.origin;
       const double u = offset.dot(s.u_axis), v = offset.dot(s.v_axis);
-      if (s.is_static && u > -0.001 && v > -0.001 && u < s.width + 0.001 && v < s.height + 0.001) nearest = std::min(nearest, std::fabs(offset.dot(s.normal())));
+      if (s.is_static && u > -0.001 && v > -0.001 && u < s.width + 0.001 && v < s.height + 0.001)
+        nearest = std::min(nearest, std::fabs(offset.dot(s.normal())));
     }
     ASSERT_LT(nearest, 0.012) << p.transpose();
   }

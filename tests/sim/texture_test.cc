@@ -20,7 +20,8 @@ Spread spread_of(const Skin& skin, float foot_m) {
   constexpr int kCount = 60;
   for (int j = 0; j < kCount; ++j) {
     for (int i = 0; i < kCount; ++i) {
-      const double tone = texture_tone(skin, 0.8F * static_cast<float>(i) / kCount, 0.8F * static_cast<float>(j) / kCount, 0.8F, 0.8F, foot_m);
+      const double tone =
+          texture_tone(skin, 0.8F * static_cast<float>(i) / kCount, 0.8F * static_cast<float>(j) / kCount, 0.8F, 0.8F, foot_m);
       sum += tone;
       squares += tone * tone;
     }
@@ -30,7 +31,8 @@ Spread spread_of(const Skin& skin, float foot_m) {
 }
 
 TEST(Texture, FromFarAwayDetailFadesAndTheMeanStays) {
-  for (const Material material : {Material::kCarpet, Material::kTiles, Material::kCeiling, Material::kKeyboard, Material::kBrick}) {
+  for (const Material material :
+       {Material::kCarpet, Material::kTiles, Material::kCeiling, Material::kKeyboard, Material::kBrick}) {
     const Skin skin{material, 7, 0.5F};
     const Spread near = spread_of(skin, 0.0005F), far = spread_of(skin, 0.5F);
     EXPECT_LT(far.sigma, 0.6 * near.sigma) << static_cast<int>(material);

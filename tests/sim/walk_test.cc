@@ -59,7 +59,8 @@ TEST_P(Walks, NobodyWalksThroughAWall) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Walks, testing::Combine(testing::Values(SceneKind::kSmall, SceneKind::kBuilding), testing::Values(1U, 2U)));
+INSTANTIATE_TEST_SUITE_P(All, Walks,
+                         testing::Combine(testing::Values(SceneKind::kSmall, SceneKind::kBuilding), testing::Values(1U, 2U)));
 
 TEST(Building, TheLoopIsWalkedAllAround) {
   const World world = make_world({SceneKind::kBuilding, 1, 1});
@@ -85,7 +86,8 @@ std::map<std::uint32_t, int> looks_between(const World& world, int side, double 
 
 TEST(Building, LookAlikeStretchesDifferOnlyBySigns) {
   const World world = make_world({SceneKind::kBuilding, 1, 1});
-  const auto first = looks_between(world, 0, 10.0, 22.0), second = looks_between(world, 2, 10.0, 22.0), other = looks_between(world, 1, 24.0, 36.0);
+  const auto first = looks_between(world, 0, 10.0, 22.0), second = looks_between(world, 2, 10.0, 22.0),
+             other = looks_between(world, 1, 24.0, 36.0);
   const auto share = [](const auto& a, const auto& b) {
     int common = 0, all = 0;
     for (const auto& [seed, count] : a) {

@@ -18,7 +18,7 @@
 
 namespace camloc::sim {
 
-inline constexpr double kCorridorWidth = 2.2;   // metres
+inline constexpr double kCorridorWidth = 2.2;  // metres
 inline constexpr double kCorridorHeight = 2.7;
 inline constexpr double kWallThickness = 0.15;
 
@@ -35,15 +35,15 @@ struct Stretch {
 /// x in [0.9, 1.85].
 struct Office {
   int side = 0;
-  bool is_outer = true;      ///< right-hand side of the walk
-  double from_s = 0;         ///< smaller end of the room along the corridor
+  bool is_outer = true;  ///< right-hand side of the walk
+  double from_s = 0;     ///< smaller end of the room along the corridor
   double width = 4.5, depth = 5.0;
   int room = 1;
 };
 
 struct CorridorSide {
-  Placement place;           ///< x = s, y = n
-  double length = 0;         ///< of the outer wall
+  Placement place;    ///< x = s, y = n
+  double length = 0;  ///< of the outer wall
   std::vector<Stretch> stretches;
 };
 
@@ -57,7 +57,7 @@ struct FloorPlan {
 struct SceneOptions {
   SceneKind kind = SceneKind::kBuilding;
   std::uint32_t seed = 1;
-  std::uint32_t day = 1;     ///< 1: the mapping day; other days move the clutter and change the light
+  std::uint32_t day = 1;  ///< 1: the mapping day; other days move the clutter and change the light
 };
 
 [[nodiscard]] FloorPlan floor_plan(SceneKind kind);

@@ -58,14 +58,15 @@ void ColorSensor::blur_motion(const Rendering& rendering, const Trajectory::Twis
       const float depth = rendering.depth_m.at(x, y);
       const float inverse = depth > 0.0F ? 1.0F / depth : 0.0F;
       // Motion of the scene point in the camera, divided by its depth: -v / z - w x (rx, ry, 1).
-      const float px = -v.x() * inverse - (w.y() - w.z() * ry), py = -v.y() * inverse - (w.z() * rx - w.x()), pz = -v.z() * inverse - (w.x() * ry - w.y() * rx);
+      const float px = -v.x() * inverse - (w.y() - w.z() * ry), py = -v.y() * inverse - (w.z() * rx - w.x()),
+                  pz = -v.z() * inverse - (w.x() * ry - w.y() * rx);
       const float flow_x = f * (px - rx * pz), flow_y = f * (py - ry * pz);
       const float length = std::max(std::fabs(flow_x), std::fabs(flow_y));
       if (length < 0.5F) {
         radiance_.at(x, y) = rendering.radiance.at(x, y);
         continue;
       }
-      const int count = std::min(2 + static_cast<int>(length), 24);
+      const int count = std::min(2 + static_cast<int>(0.7F * length), 16);
       float sum = 0;
       for (int k = 0; k < count; ++k) {
         const float along = (static_cast<float>(k) + 0.5F) / static_cast<float>(count) - 0.5F;
@@ -87,14 +88,15 @@ void ColorSensor::soften() {
     for (int x = 1; x + 1 < width; ++x) out[x] = (1 - 2 * kSide) * in[x] + kSide * (in[x - 1] + in[x + 1]);
   }
   for (int y = 0; y < height; ++y) {
-    const float *in = scratch_.row(y), *above = scratch_.row(std::max(0, y - 1)), *below = scratch_.row(std::min(height - 1, y + 1));
+    const float *in = scratch_.row(y), *above = scratch_.row(std::max(0, y - 1)),
+                *below = scratch_.row(std::min(height - 1, y + 1));
     float* out = radiance_.row(y);
     for (int x = 0; x < width; ++x) out[x] = (1 - 2 * kSide) * in[x] + kSide * (above[x] + below[x]);
   }
 }
 
-void ColorSensor::expose(const Rendering& rendering, const Trajectory::Twist& twist, const Exposure& exposure, std::uint32_t frame_seed,
-                         bool is_perfect, Image<std::uint8_t>* gray) {
+void ColorSensor::expose(const Rendering& rendering, const Trajectory::Twist& twist, const Exposure& exposure,
+                         std::uint32_t frame_seed, bool is_perfect, Image<std::uint8_t>* gray) {
   gray->resize(intrinsics_.width, intrinsics_.height);
   if (is_perfect) {
     radiance_.pixels = rendering.radiance.pixels;

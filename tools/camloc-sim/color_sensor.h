@@ -17,8 +17,8 @@
 namespace camloc::sim {
 
 struct Exposure {
-  float gain = 1.0F;       ///< radiance times gain: 1 is white
-  float time_s = 0.010F;   ///< the shutter is open around the stamp
+  float gain = 1.0F;      ///< radiance times gain: 1 is white
+  float time_s = 0.010F;  ///< the shutter is open around the stamp
 };
 
 /// Automatic exposure: from the mean tone (square root of radiance) metered before every frame, `interval_s` apart.
@@ -28,8 +28,8 @@ class ColorSensor {
  public:
   explicit ColorSensor(const Intrinsics& intrinsics);
   /// `is_perfect` leaves out blur, softness, vignetting and noise.
-  void expose(const Rendering& rendering, const Trajectory::Twist& twist, const Exposure& exposure, std::uint32_t frame_seed, bool is_perfect,
-              Image<std::uint8_t>* gray);
+  void expose(const Rendering& rendering, const Trajectory::Twist& twist, const Exposure& exposure, std::uint32_t frame_seed,
+              bool is_perfect, Image<std::uint8_t>* gray);
 
  private:
   void blur_motion(const Rendering& rendering, const Trajectory::Twist& twist, float time_s);

@@ -21,8 +21,10 @@ std::vector<Doorway> doorways_of(const FloorPlan& plan, int side, bool is_outer)
   for (const Office& office : plan.offices) {
     if (office.side != side || office.is_outer != is_outer) continue;
     const double near = 0.9, far = 1.85;  // office frame; an outer office's x runs against s
-    if (is_outer) result.push_back({office.from_s + office.width - far, office.from_s + office.width - near});
-    else result.push_back({office.from_s + near, office.from_s + far});
+    if (is_outer)
+      result.push_back({office.from_s + office.width - far, office.from_s + office.width - near});
+    else
+      result.push_back({office.from_s + near, office.from_s + far});
   }
   std::sort(result.begin(), result.end(), [](const Doorway& a, const Doorway& b) { return a.from < b.from; });
   return result;
@@ -62,27 +64,29 @@ bool is_free(const std::vector<Doorway>& doorways, double s, double half_width) 
 }
 
 /// One thing on the wall around s, chosen by the stretch's look and the slot: the same in look-alike stretches.
-void decorate_slot(Scene* scene, const CorridorSide& side, bool is_outer, const Stretch& stretch, int slot, double s, std::uint32_t unique) {
+void decorate_slot(Scene* scene, const CorridorSide& side, bool is_outer, const Stretch& stretch, int slot, double s,
+                   std::uint32_t unique) {
   const std::uint32_t h = hash32(stretch.look, is_outer ? 1U : 2U, static_cast<std::uint32_t>(slot));
   const Placement at = wall_place(side, is_outer, s);
   switch (h % 8U) {
-    case 0: case 1: case 2:
-      add_closed_door(scene, at.child(-0.6, 0, 0), unique, kCorridorRoom);
-      break;
-    case 3: case 4: {
+    case 0:
+    case 1:
+    case 2: add_closed_door(scene, at.child(-0.6, 0, 0), unique, kCorridorRoom); break;
+    case 3:
+    case 4: {
       const double width = range(hash32(h, 1), 0.5F, 0.95F);
-      add_on_wall(scene, at, width, 1.4 * width, range(hash32(h, 2), 0.75F, 1.15F), 0.012, {Material::kPoster, hash32(h, 3)}, kCorridorRoom);
+      add_on_wall(scene, at, width, 1.4 * width, range(hash32(h, 2), 0.75F, 1.15F), 0.012, {Material::kPoster, hash32(h, 3)},
+                  kCorridorRoom);
       break;
     }
-    case 5:
-      add_on_wall(scene, at, 1.4, 0.95, 0.95, 0.02, {Material::kPinboard, hash32(h, 4)}, kCorridorRoom);
-      break;
+    case 5: add_on_wall(scene, at, 1.4, 0.95, 0.95, 0.02, {Material::kPinboard, hash32(h, 4)}, kCorridorRoom); break;
     case 6:
       add_radiator(scene, at.child(-0.6, 0, 0), 1.2, kCorridorRoom);
       add_on_wall(scene, at, 0.42, 0.3, 1.4, 0.012, {Material::kPoster, hash32(h, 5)}, kCorridorRoom);
       break;
     default:
-      add_on_wall(scene, at, 0.24, 0.55, 0.9, 0.14, {Material::kSign, hash32(h, 6), 0.3F}, kCorridorRoom);  // fire extinguisher cupboard
+      add_on_wall(scene, at, 0.24, 0.55, 0.9, 0.14, {Material::kSign, hash32(h, 6), 0.3F},
+                  kCorridorRoom);  // fire extinguisher cupboard
       add_on_wall(scene, at, 0.21, 0.297, 1.5, 0.003, {Material::kPaper, hash32(h, 7)}, kCorridorRoom);
       break;
   }
@@ -99,13 +103,16 @@ void decorate_wall(Scene* scene, const FloorPlan& plan, int side_index, bool is_
       const double s = stretch.from_s + (slot + 0.5) * kSlot;
       const bool is_inner_corner = !is_outer && (s < kCorridorWidth + 0.75 || s > side.length - kCorridorWidth - 0.75);
       if (is_inner_corner || !is_free(doorways, s, 0.95)) continue;
-      const std::uint32_t unique = hash32(options.seed, static_cast<std::uint32_t>(side_index * 1000 + slot * 2 + (is_outer ? 1 : 0)), static_cast<std::uint32_t>(stretch.from_s * 10));
+      const std::uint32_t unique =
+          hash32(options.seed, static_cast<std::uint32_t>(side_index * 1000 + slot * 2 + (is_outer ? 1 : 0)),
+                 static_cast<std::uint32_t>(stretch.from_s * 10));
       decorate_slot(scene, side, is_outer, stretch, slot, s, unique);
     }
     // What tells look-alike stretches apart for the attentive: one sheet of paper each, and the door plates.
     const double s = stretch.from_s + 2.0;
     if (is_outer && stretch.to_s - stretch.from_s > 5.0 && is_free(doorways, s, 0.2)) {
-      const std::uint32_t unique = hash32(options.seed, static_cast<std::uint32_t>(side_index), static_cast<std::uint32_t>(stretch.from_s * 10) + 5U);
+      const std::uint32_t unique =
+          hash32(options.seed, static_cast<std::uint32_t>(side_index), static_cast<std::uint32_t>(stretch.from_s * 10) + 5U);
       add_on_wall(scene, wall_place(side, is_outer, s), 0.297, 0.42, 1.35, 0.003, {Material::kPoster, unique}, kCorridorRoom);
     }
   }
@@ -130,26 +137,31 @@ void add_shell(Scene* scene, const FloorPlan& plan, int side_index) {
     const double to = std::min(stretch.to_s, floor_end);
     if (to > stretch.from_s) {
       scene->add_floor(side.place, stretch.from_s, 0, to, kCorridorWidth, 0, floor_skin(stretch), kCorridorRoom);
-      scene->add_ceiling(side.place, stretch.from_s, 0, to, kCorridorWidth, kCorridorHeight, {Material::kCeiling, hash32(stretch.look, 102), 0.82F}, kCorridorRoom);
+      scene->add_ceiling(side.place, stretch.from_s, 0, to, kCorridorWidth, kCorridorHeight,
+                         {Material::kCeiling, hash32(stretch.look, 102), 0.82F}, kCorridorRoom);
     }
-    add_wall(scene, side.place, stretch.to_s, stretch.from_s, 0.0, kCorridorHeight, doorways_of(plan, side_index, true), wall_skin(stretch), kCorridorRoom);
+    add_wall(scene, side.place, stretch.to_s, stretch.from_s, 0.0, kCorridorHeight, doorways_of(plan, side_index, true),
+             wall_skin(stretch), kCorridorRoom);
     const double inner_from = std::max(stretch.from_s, is_first_open ? 0.0 : kCorridorWidth);
     const double inner_to = std::min(stretch.to_s, is_last_open ? side.length : side.length - kCorridorWidth);
     if (inner_to > inner_from) {
-      add_wall(scene, side.place, inner_from, inner_to, kCorridorWidth, kCorridorHeight, doorways_of(plan, side_index, false), wall_skin(stretch), kCorridorRoom);
+      add_wall(scene, side.place, inner_from, inner_to, kCorridorWidth, kCorridorHeight, doorways_of(plan, side_index, false),
+               wall_skin(stretch), kCorridorRoom);
     }
   }
   const Skin end{Material::kPaint, 300, 0.75F};
   if (is_first_open) scene->add_upright(side.place, 0, 0, 0, kCorridorWidth, 0, kCorridorHeight, end, kCorridorRoom);
-  if (is_last_open) scene->add_upright(side.place, side.length, kCorridorWidth, side.length, 0, 0, kCorridorHeight, end, kCorridorRoom);
+  if (is_last_open)
+    scene->add_upright(side.place, side.length, kCorridorWidth, side.length, 0, 0, kCorridorHeight, end, kCorridorRoom);
   for (const Doorway& door : doorways_of(plan, side_index, true)) add_reveal(scene, side.place, door, -kWallThickness, 0.0);
-  for (const Doorway& door : doorways_of(plan, side_index, false)) add_reveal(scene, side.place, door, kCorridorWidth, kCorridorWidth + kWallThickness);
+  for (const Doorway& door : doorways_of(plan, side_index, false))
+    add_reveal(scene, side.place, door, kCorridorWidth, kCorridorWidth + kWallThickness);
 }
 
 }  // namespace
 
-void add_wall(Scene* scene, const Placement& place, double x0, double x1, double y, double height, const std::vector<Doorway>& doorways,
-              const Skin& skin, int room) {
+void add_wall(Scene* scene, const Placement& place, double x0, double x1, double y, double height,
+              const std::vector<Doorway>& doorways, const Skin& skin, int room) {
   const double direction = x1 > x0 ? 1.0 : -1.0, length = std::fabs(x1 - x0);
   const auto piece = [&](double from, double to, double z0) {  // along the wall, from its left end
     if (to - from < 1e-6) return;

@@ -33,19 +33,25 @@ Status prepare_folder(const std::string& folder, bool may_overwrite) {
 std::string readme(const DatasetOptions& options, const RgbdCamera& camera, const DatasetSummary& summary) {
   std::ostringstream out;
   out << "Synthetic RGB-D data set written by camloc-sim.\n\n"
-      << "scene           " << (options.kind == SceneKind::kBuilding ? "building: corridor loop 57 x 40 m, nine offices" : "small: corridor corner and two offices") << "\n"
+      << "scene           "
+      << (options.kind == SceneKind::kBuilding ? "building: corridor loop 57 x 40 m, nine offices"
+                                               : "small: corridor corner and two offices")
+      << "\n"
       << "seed            " << options.seed << "\n"
       << "rate            " << options.recording.rate_hz << " Hz\n"
       << "duration scale  " << options.recording.duration_scale << "\n\n"
       << "mapping/        " << summary.num_mapping_frames << " frames: the walk to build the map from\n"
-      << "day2/           " << summary.num_day2_frames << " frames: another day: other path, heights and angles, other light (some lamps off), chairs, boxes\n"
+      << "day2/           " << summary.num_day2_frames
+      << " frames: another day: other path, heights and angles, other light (some lamps off), chairs, boxes\n"
       << "                and papers moved, people in the way, a stretch walked in the other direction\n"
-      << "lidar.ply       " << summary.num_lidar_points << " points of what does not move, every " << options.lidar.step_m << " m, noise " << options.lidar.noise_m << " m\n"
+      << "lidar.ply       " << summary.num_lidar_points << " points of what does not move, every " << options.lidar.step_m
+      << " m, noise " << options.lidar.noise_m << " m\n"
       << "camera.toml     the camera of both walks\n\n"
-      << "Each walk is a TUM RGB-D folder: rgb.txt, depth.txt (5000 units per metre, registered to colour, 0 = none) and groundtruth.txt\n"
+      << "Each walk is a TUM RGB-D folder: rgb.txt, depth.txt (5000 units per metre, registered to colour, 0 = none) and "
+         "groundtruth.txt\n"
       << "(T_world_camera of the colour camera at each frame's stamp: x right, y down, z forward; world z up, metres).\n"
-      << "Stamps are the middle of the exposure. Depth noise: sigma(z) = " << camera.depth_noise.constant_m << " + " << camera.depth_noise.quadratic_per_m
-      << " z^2 m, steps of 1/8 px disparity, 0.5 to 5 m.\n"
+      << "Stamps are the middle of the exposure. Depth noise: sigma(z) = " << camera.depth_noise.constant_m << " + "
+      << camera.depth_noise.quadratic_per_m << " z^2 m, steps of 1/8 px disparity, 0.5 to 5 m.\n"
       << "Same options, same bytes.\n";
   return out.str();
 }
@@ -75,7 +81,8 @@ Result<DatasetSummary> write_dataset(const std::string& folder, const DatasetOpt
     const FloorPlan plan = floor_plan(options.kind);
     LidarOptions lidar = options.lidar;
     lidar.seed = options.seed;
-    Result<std::uint64_t> points = write_lidar_ply(folder + "/lidar.ply", build_scene(plan, {options.kind, options.seed, 1}), lidar);
+    Result<std::uint64_t> points =
+        write_lidar_ply(folder + "/lidar.ply", build_scene(plan, {options.kind, options.seed, 1}), lidar);
     if (!points) return points.status();
     summary.num_lidar_points = *points;
     if (progress) progress("lidar", 1, 1);

@@ -20,7 +20,7 @@ struct DatasetOptions {
   RecordingOptions recording;
   LidarOptions lidar;
   bool has_mapping = true, has_day2 = true, has_lidar = true;
-  bool may_overwrite = false;      ///< an existing folder's data set is replaced
+  bool may_overwrite = false;  ///< an existing folder's data set is replaced
 };
 
 struct DatasetSummary {
@@ -31,6 +31,7 @@ struct DatasetSummary {
 /// Called with the name of the part being written, and how much of it is done.
 using DatasetProgress = std::function<void(const std::string&, int, int)>;
 
-[[nodiscard]] Result<DatasetSummary> write_dataset(const std::string& folder, const DatasetOptions& options, const DatasetProgress& progress);
+[[nodiscard]] Result<DatasetSummary> write_dataset(const std::string& folder, const DatasetOptions& options,
+                                                   const DatasetProgress& progress);
 
 }  // namespace camloc::sim

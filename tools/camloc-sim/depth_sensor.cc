@@ -35,7 +35,8 @@ void DepthSensor::measure_exactly(const Rendering& rendering, Image<std::uint16_
   }
 }
 
-void DepthSensor::measure(const Rendering& rendering, const Renderer& renderer, std::uint32_t frame_seed, Image<std::uint16_t>* depth) {
+void DepthSensor::measure(const Rendering& rendering, const Renderer& renderer, std::uint32_t frame_seed,
+                          Image<std::uint16_t>* depth) {
   depth->resize(intrinsics_.width, intrinsics_.height);
   if (options_.is_perfect) return measure_exactly(rendering, depth);
   const int width = intrinsics_.width, height = intrinsics_.height;
@@ -48,7 +49,8 @@ void DepthSensor::measure(const Rendering& rendering, const Renderer& renderer, 
     for (int x = 0; x < width; ++x) {
       const std::uint32_t bits = random(), more_bits = random();
       // Matching windows cover several pixels: now and then a neighbour's depth wins, which frays edges.
-      const int from_x = std::clamp(x + static_cast<int>((bits >> 3) % 5U) - 2, 0, width - 1), from_y = std::clamp(y + static_cast<int>((bits >> 9) % 3U) - 1, 0, height - 1);
+      const int from_x = std::clamp(x + static_cast<int>((bits >> 3) % 5U) - 2, 0, width - 1),
+                from_y = std::clamp(y + static_cast<int>((bits >> 9) % 3U) - 1, 0, height - 1);
       const bool strays = (bits & 7U) == 0U;
       const bool is_edge = rendering.surface.at(from_x, from_y) != rendering.surface.at(x, y);
       const float z = strays ? rendering.depth_m.at(from_x, from_y) : rendering.depth_m.at(x, y);
@@ -56,13 +58,16 @@ void DepthSensor::measure(const Rendering& rendering, const Renderer& renderer, 
       out = 0;
       if (z < static_cast<float>(options_.min_m) || z > static_cast<float>(options_.max_m)) continue;
       if (is_shadowed_[static_cast<std::size_t>(x)] != 0U) continue;
-      if (is_edge && std::fabs(rendering.depth_m.at(from_x, from_y) - rendering.depth_m.at(x, y)) > 0.02F * z && (bits >> 16) % 4U == 0U) continue;
-      // Little light comes back at a grazing angle, and from far away.
-      const float patch = value_noise(static_cast<float>(x) * 0.15F, static_cast<float>(y) * 0.15F, frame_seed);
+      if (is_edge && std::fabs(rendering.depth_m.at(from_x, from_y) - rendering.depth_m.at(x, y)) > 0.02F * z &&
+          (bits >> 16) % 4U == 0U)
+        continue;
+      // Little light comes back at a grazing angle, and from far away; shiny things answer in patches.
       const float cosine = rendering.cosine.at(x, y);
-      if (cosine < 0.10F + 0.08F * patch + 0.02F * z) continue;
-      const std::int32_t id = rendering.surface.at(x, y);
-      if (is_depth_unfriendly(renderer.seen_surface(id).skin.material) && patch > -0.35F) continue;
+      const bool is_unfriendly = is_depth_unfriendly(renderer.seen_surface(rendering.surface.at(x, y)).skin.material);
+      if (is_unfriendly || cosine < 0.18F + 0.02F * z) {
+        const float patch = value_noise(static_cast<float>(x) * 0.15F, static_cast<float>(y) * 0.15F, frame_seed);
+        if (cosine < 0.10F + 0.08F * patch + 0.02F * z || (is_unfriendly && patch > -0.35F)) continue;
+      }
       const float disparity = focal_baseline / z + sigma_px * normal_(more_bits);
       const float stepped = step * std::floor(disparity / step + 0.5F);
       const float measured = focal_baseline / std::max(stepped, step);

@@ -16,12 +16,12 @@
 namespace camloc::sim {
 
 struct DepthSensorOptions {
-  bool is_perfect = false;         ///< exact depth at every pixel, any range the format holds
-  double unit_m = 0.0002;          ///< metres per raw unit: TUM's factor 5000
-  double baseline_m = 0.075;       ///< camera to projector
-  double focal_px = 580;           ///< of the infrared camera
+  bool is_perfect = false;    ///< exact depth at every pixel, any range the format holds
+  double unit_m = 0.0002;     ///< metres per raw unit: TUM's factor 5000
+  double baseline_m = 0.075;  ///< camera to projector
+  double focal_px = 580;      ///< of the infrared camera
   double disparity_step_px = 0.125;
-  double noise_per_m = 0.0015;     ///< sigma of depth before the steps is noise_per_m * z^2
+  double noise_per_m = 0.0015;  ///< sigma of depth before the steps is noise_per_m * z^2
   double min_m = 0.5, max_m = 5.0;
 };
 

@@ -50,8 +50,12 @@ World make_world(const SceneOptions& options) {
 }
 
 FrameMaker::FrameMaker(const World& world, const RgbdCamera& camera, const FrameMakerOptions& options)
-    : world_(&world), options_(options), renderer_(world.scene, camera.color), meter_(world.scene, meter_intrinsics(camera.color)),
-      color_sensor_(camera.color), depth_sensor_(camera.color, {.is_perfect = options.is_perfect, .unit_m = camera.depth_unit_m}) {}
+    : world_(&world),
+      options_(options),
+      renderer_(world.scene, camera.color),
+      meter_(world.scene, meter_intrinsics(camera.color)),
+      color_sensor_(camera.color),
+      depth_sensor_(camera.color, {.is_perfect = options.is_perfect, .unit_m = camera.depth_unit_m}) {}
 
 float FrameMaker::light_drift(double time_s) const {
   const auto seed = hash32(world_->options.seed, world_->options.day, 4000);

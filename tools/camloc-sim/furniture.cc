@@ -31,11 +31,13 @@ void add_desk_clutter(Scene* scene, const Placement& desk, const Seeds& seeds, i
   for (std::uint32_t k = 0; k < 4; ++k) {
     // Half of the sheets stay where they were.
     const std::uint32_t h = hash32(k % 2U == 0U ? seeds.object : today, 20U + k);
-    const Placement at = desk.child(range(hash32(h, 1), 0.15F, 1.45F), range(hash32(h, 2), -0.65F, -0.15F), range(hash32(h, 3), -1.0F, 1.0F));
+    const Placement at =
+        desk.child(range(hash32(h, 1), 0.15F, 1.45F), range(hash32(h, 2), -0.65F, -0.15F), range(hash32(h, 3), -1.0F, 1.0F));
     add_sheet(scene, at, kDeskHeight + 0.002 + 0.001 * k, 0.21, 0.297, skin(Material::kPaper, hash32(h, 4)), room);
   }
   const std::uint32_t mug = hash32(today, 40);
-  const Placement at = desk.child(range(hash32(mug, 1), 0.2F, 1.4F), range(hash32(mug, 2), -0.6F, -0.4F), range(hash32(mug, 3), 0.0F, 3.0F));
+  const Placement at =
+      desk.child(range(hash32(mug, 1), 0.2F, 1.4F), range(hash32(mug, 2), -0.6F, -0.4F), range(hash32(mug, 3), 0.0F, 3.0F));
   const Skin china = skin(Material::kSign, hash32(seeds.object, 41), 0.85F);
   scene->add_box(at, {-0.04, -0.04, kDeskHeight, 0.04, 0.04, kDeskHeight + 0.1}, china, china, room, false);
   double z = kDeskHeight;
@@ -59,14 +61,17 @@ void add_desk(Scene* scene, const Placement& place, const Seeds& seeds, int room
   scene->add_box(place, {1.15, -0.72, 0.08, 1.56, -0.08, kDeskHeight - 0.03}, wood, skin(Material::kRibs, 6, 0.5F), room, true);
   add_monitor(scene, place, 0.55, seeds, room);
   if (hash32(seeds.object, 2) % 2U == 0U) add_monitor(scene, place, 1.15, {hash32(seeds.object, 7), seeds.day}, room);
-  const Placement keyboard = place.child(0.55 + range(hash32(seeds.object, seeds.day, 8), -0.06F, 0.06F), -0.55, range(hash32(seeds.object, seeds.day, 9), -0.1F, 0.1F));
-  scene->add_box(keyboard, {-0.22, -0.07, kDeskHeight, 0.22, 0.07, kDeskHeight + 0.018}, skin(Material::kKeyboard, hash32(seeds.object, 10)), metal, room, false);
+  const Placement keyboard = place.child(0.55 + range(hash32(seeds.object, seeds.day, 8), -0.06F, 0.06F), -0.55,
+                                         range(hash32(seeds.object, seeds.day, 9), -0.1F, 0.1F));
+  scene->add_box(keyboard, {-0.22, -0.07, kDeskHeight, 0.22, 0.07, kDeskHeight + 0.018},
+                 skin(Material::kKeyboard, hash32(seeds.object, 10)), metal, room, false);
   add_desk_clutter(scene, place, seeds, room);
 }
 
 void add_bookshelf(Scene* scene, const Placement& place, double width_m, const Seeds& seeds, int room) {
   const Skin wood = skin(Material::kWood, hash32(seeds.object, 1), 0.5F);
-  scene->add_box(place, {0.0, -0.3, 0.0, width_m, -0.01, 2.05}, wood, skin(Material::kBooks, hash32(seeds.object, 2)), room, true);
+  scene->add_box(place, {0.0, -0.3, 0.0, width_m, -0.01, 2.05}, wood, skin(Material::kBooks, hash32(seeds.object, 2)), room,
+                 true);
 }
 
 void add_chair(Scene* scene, const Placement& place, const Seeds& seeds, int room) {
@@ -84,9 +89,11 @@ void add_box_pile(Scene* scene, const Placement& place, const Seeds& seeds, int 
   double z = 0;
   for (int k = 0; k < count; ++k) {
     const std::uint32_t h = hash32(seeds.object, 10U + static_cast<std::uint32_t>(k));
-    const double half_x = range(hash32(h, 1), 0.16F, 0.28F), half_y = range(hash32(h, 2), 0.14F, 0.24F), height = range(hash32(h, 3), 0.2F, 0.36F);
+    const double half_x = range(hash32(h, 1), 0.16F, 0.28F), half_y = range(hash32(h, 2), 0.14F, 0.24F),
+                 height = range(hash32(h, 3), 0.2F, 0.36F);
     const Skin look = skin(Material::kCardboard, hash32(h, 4), range(hash32(h, 5), 0.45F, 0.65F));
-    scene->add_box(place.child(0, 0, range(hash32(h, seeds.day, 6), -0.3F, 0.3F)), {-half_x, -half_y, z, half_x, half_y, z + height}, look, look, room, false);
+    scene->add_box(place.child(0, 0, range(hash32(h, seeds.day, 6), -0.3F, 0.3F)),
+                   {-half_x, -half_y, z, half_x, half_y, z + height}, look, look, room, false);
     z += height;
   }
 }
@@ -118,7 +125,8 @@ void add_radiator(Scene* scene, const Placement& place, double width_m, int room
 
 void add_closed_door(Scene* scene, const Placement& place, std::uint32_t plate_seed, int room) {
   constexpr double kWidth = 0.95, kHeight = 2.08;
-  const Skin frame = skin(Material::kPlain, 17, 0.35F), leaf = skin(Material::kWood, 18, 0.56F), metal = skin(Material::kPlain, 19, 0.75F);
+  const Skin frame = skin(Material::kPlain, 17, 0.35F), leaf = skin(Material::kWood, 18, 0.56F),
+             metal = skin(Material::kPlain, 19, 0.75F);
   scene->add_box(place, {-0.06, -0.03, 0.0, 0.0, 0.0, kHeight}, frame, frame, room, true);
   scene->add_box(place, {kWidth, -0.03, 0.0, kWidth + 0.06, 0.0, kHeight}, frame, frame, room, true);
   scene->add_box(place, {-0.06, -0.03, kHeight, kWidth + 0.06, 0.0, kHeight + 0.06}, frame, frame, room, true);
@@ -128,7 +136,8 @@ void add_closed_door(Scene* scene, const Placement& place, std::uint32_t plate_s
   add_on_wall(scene, place.child(kWidth + 0.25, 0, 0), 0.22, 0.14, 1.5, 0.006, skin(Material::kSign, plate_seed, 0.9F), room);
 }
 
-void add_on_wall(Scene* scene, const Placement& place, double width_m, double height_m, double bottom_z, double depth_m, const Skin& look, int room) {
+void add_on_wall(Scene* scene, const Placement& place, double width_m, double height_m, double bottom_z, double depth_m,
+                 const Skin& look, int room) {
   const Skin edge = skin(Material::kPlain, 20, 0.3F);
   scene->add_box(place, {-0.5 * width_m, -depth_m, bottom_z, 0.5 * width_m, 0.0, bottom_z + height_m}, edge, look, room, true);
 }

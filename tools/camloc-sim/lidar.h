@@ -13,8 +13,8 @@
 namespace camloc::sim {
 
 struct LidarOptions {
-  double step_m = 0.03;      ///< between neighbouring points
-  double noise_m = 0.002;    ///< sigma along the surface normal
+  double step_m = 0.03;    ///< between neighbouring points
+  double noise_m = 0.002;  ///< sigma along the surface normal
   std::uint32_t seed = 1;
 };
 

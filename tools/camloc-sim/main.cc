@@ -5,9 +5,11 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <map>
 #include <string>
+#include <thread>
 
 #include "tools/camloc-sim/dataset.h"
 
@@ -43,15 +45,25 @@ class ProgressBar {
 
 void add_options(CLI::App* app, std::string* out, camloc::sim::DatasetOptions* options, std::string* only) {
   app->add_option("--out", *out, "Folder to write to; created, must be empty unless --force")->required();
-  app->add_option("--scene", options->kind, "building: corridor loop 57 x 40 m with nine offices; small: a corner and two offices")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, SceneKind>{{"building", SceneKind::kBuilding}, {"small", SceneKind::kSmall}}))
+  app->add_option("--scene", options->kind,
+                  "building: corridor loop 57 x 40 m with nine offices; small: a corner and two offices")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, SceneKind>{{"building", SceneKind::kBuilding}, {"small", SceneKind::kSmall}}))
       ->default_str("building");
   app->add_option("--seed", options->seed, "Another seed is another building and another walk")->capture_default_str();
-  app->add_option("--rate-hz", options->recording.rate_hz, "Frames per second (default 30; small 10)")->check(CLI::Range(0.1, 240.0));
-  app->add_option("--duration-scale", options->recording.duration_scale, "Only this share of each walk")->check(CLI::Range(0.001, 1.0))->capture_default_str();
-  app->add_option("--jobs", options->recording.num_jobs, "Threads; the files do not depend on it")->check(CLI::Range(1, 256))->capture_default_str();
-  app->add_option("--jpeg-quality", options->recording.jpeg_quality, "Colour images; 0 writes PNG")->check(CLI::Range(0, 100))->capture_default_str();
-  app->add_option("--lidar-step", options->lidar.step_m, "Distance between LiDAR points, metres")->check(CLI::Range(0.005, 1.0))->capture_default_str();
+  app->add_option("--rate-hz", options->recording.rate_hz, "Frames per second (default 30; small 10)")
+      ->check(CLI::Range(0.1, 240.0));
+  app->add_option("--duration-scale", options->recording.duration_scale, "Only this share of each walk")
+      ->check(CLI::Range(0.001, 1.0))
+      ->capture_default_str();
+  app->add_option("--jobs", options->recording.num_jobs, "Threads (default: one per processor); the files do not depend on it")
+      ->check(CLI::Range(1, 256));
+  app->add_option("--jpeg-quality", options->recording.jpeg_quality, "Colour images; 0 writes PNG")
+      ->check(CLI::Range(0, 100))
+      ->capture_default_str();
+  app->add_option("--lidar-step", options->lidar.step_m, "Distance between LiDAR points, metres")
+      ->check(CLI::Range(0.005, 1.0))
+      ->capture_default_str();
   app->add_option("--only", *only, "Write only this part")->check(CLI::IsMember({"mapping", "day2", "lidar"}));
   app->add_flag("--perfect", options->recording.frames.is_perfect, "No noise, blur or missing depth");
   app->add_flag("--force", options->may_overwrite, "Replace a data set in a folder that is not empty");
@@ -60,18 +72,19 @@ void add_options(CLI::App* app, std::string* out, camloc::sim::DatasetOptions* o
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Writes a synthetic RGB-D data set: mapping/ and day2/ (TUM layout with ground truth), lidar.ply, camera.toml, README.txt.\n"
-               "Example: camloc sim --scene small --out /tmp/small",
-               "camloc-sim");
+  CLI::App app(
+      "Writes a synthetic RGB-D data set: mapping/ and day2/ (TUM layout with ground truth), lidar.ply, camera.toml, "
+      "README.txt.\n"
+      "Example: camloc sim --scene small --out /tmp/small",
+      "camloc-sim");
   std::string out, only;
   camloc::sim::DatasetOptions options;
   options.recording.rate_hz = 0;
+  options.recording.num_jobs = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 256U));
   add_options(&app, &out, &options, &only);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  } catch (const CLI::ParseError& error) { return app.exit(error) == 0 ? 0 : 2; }
   if (options.recording.rate_hz == 0) options.recording.rate_hz = options.kind == SceneKind::kSmall ? 10 : 30;
   if (!only.empty()) {
     options.has_mapping = only == "mapping";
@@ -88,7 +101,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "camloc-sim: %s\n", summary.status().message().c_str());
     return summary.status().code() == camloc::ErrorCode::kInvalid ? 2 : 1;
   }
-  std::printf("%s: mapping %d frames, day2 %d frames, %llu LiDAR points\n", out.c_str(), summary->num_mapping_frames, summary->num_day2_frames,
-              static_cast<unsigned long long>(summary->num_lidar_points));
+  std::printf("%s: mapping %d frames, day2 %d frames, %llu LiDAR points\n", out.c_str(), summary->num_mapping_frames,
+              summary->num_day2_frames, static_cast<unsigned long long>(summary->num_lidar_points));
   return 0;
 }

@@ -39,12 +39,22 @@ inline int floor_int(float x) {
   return i - (x < static_cast<float>(i) ? 1 : 0);
 }
 
+/// A knot of value noise, [0, 1): a short hash, because a frame needs some ten million of them.
+inline float knot(std::uint32_t column, std::uint32_t row) {
+  std::uint32_t h = (column ^ row) * 0x85ebca77U;
+  h ^= h >> 15;
+  return unit(h * 0xc2b2ae3dU);
+}
+
 /// Smooth noise with one knot per unit square, in [-1, 1], mean 0.
 inline float value_noise(float x, float y, std::uint32_t seed) {
+  constexpr std::uint32_t kColumn = 0x27d4eb2dU, kRow = 0x165667b1U;
   const int ix = floor_int(x), iy = floor_int(y);
   const float fx = x - static_cast<float>(ix), fy = y - static_cast<float>(iy);
-  const float a = unit(hash_cell(ix, iy, seed)), b = unit(hash_cell(ix + 1, iy, seed));
-  const float c = unit(hash_cell(ix, iy + 1, seed)), d = unit(hash_cell(ix + 1, iy + 1, seed));
+  const std::uint32_t column = static_cast<std::uint32_t>(ix) * kColumn,
+                      row = static_cast<std::uint32_t>(iy) * kRow + seed * 0x9e3779b1U;
+  const float a = knot(column, row), b = knot(column + kColumn, row);
+  const float c = knot(column, row + kRow), d = knot(column + kColumn, row + kRow);
   const float sx = fx * fx * (3.0F - 2.0F * fx), sy = fy * fy * (3.0F - 2.0F * fy);
   const float low = a + (b - a) * sx, high = c + (d - c) * sx;
   return 2.0F * (low + (high - low) * sy) - 1.0F;
@@ -63,7 +73,8 @@ inline float octaves(float u, float v, float scale_m, int num_octaves, float gai
   for (int k = 0; k < num_octaves; ++k) {
     norm += amplitude;
     const float weight = resolved(scale_m, foot_m);
-    if (weight > 0.0F) sum += weight * amplitude * value_noise(u / scale_m, v / scale_m, seed + static_cast<std::uint32_t>(k) * 0x68bc21ebU);
+    if (weight > 0.0F)
+      sum += weight * amplitude * value_noise(u / scale_m, v / scale_m, seed + static_cast<std::uint32_t>(k) * 0x68bc21ebU);
     scale_m *= 0.5F;
     amplitude *= gain;
   }

@@ -37,7 +37,8 @@ float picture(const Sheet& s, std::uint32_t seed) {
     const float cu = range(hash32(h, 1), 0.1F, 0.9F) * s.width, cv = range(hash32(h, 2), 0.1F, 0.9F) * s.height;
     const float half = range(hash32(h, 3), 0.05F, 0.2F) * size;
     const float ink = h % 2U == 0U ? covered_disc(s.u, s.v, cu, cv, half, s.foot)
-                                   : rotated_rectangle(s, cu, cv, half, half * range(hash32(h, 4), 0.25F, 1.0F), range(hash32(h, 5), 0.0F, 3.1F));
+                                   : rotated_rectangle(s, cu, cv, half, half * range(hash32(h, 4), 0.25F, 1.0F),
+                                                       range(hash32(h, 5), 0.0F, 3.1F));
     tone = mix(tone, range(hash32(h, 6), 0.05F, 0.95F), ink);
   }
   return tone;
@@ -47,7 +48,8 @@ float bar_chart(const Sheet& s, std::uint32_t seed) {
   const float cell = s.width / 9.0F;
   const int i = floor_int(s.u / cell);
   const float height = s.height * range(hash_cell(i, 0, seed), 0.15F, 0.95F);
-  const float bar = covered(s.u - static_cast<float>(i) * cell, 0.2F * cell, 0.9F * cell, s.foot) * covered(s.v, 0.0F, height, s.foot);
+  const float bar =
+      covered(s.u - static_cast<float>(i) * cell, 0.2F * cell, 0.9F * cell, s.foot) * covered(s.v, 0.0F, height, s.foot);
   return mix(0.92F, range(hash_cell(i, 1, seed), 0.1F, 0.6F), bar);
 }
 
@@ -70,7 +72,8 @@ float poster(const Sheet& s, std::uint32_t seed) {
   const float header = s.height * range(hash32(seed, 10), 0.72F, 0.86F), split = s.height * range(hash32(seed, 11), 0.25F, 0.45F);
   float tone = ground;
   if (s.v > header) {
-    tone = mix(1.0F - ground, ground, text_block(s, 2 * rim, header, s.width - rim, s.height - rim, 0.45F * (s.height - header), seed + 20));
+    tone = mix(1.0F - ground, ground,
+               text_block(s, 2 * rim, header, s.width - rim, s.height - rim, 0.45F * (s.height - header), seed + 20));
   } else if (s.v > split) {
     const Sheet area{s.u, s.v - split, s.width, header - split, s.foot};
     switch (hash32(seed, 12) % 4U) {
@@ -83,7 +86,8 @@ float poster(const Sheet& s, std::uint32_t seed) {
     const float middle = has_columns ? 0.5F * s.width : s.width - rim;
     const float line = range(hash32(seed, 14), 0.015F, 0.03F);
     tone = mix(tone, ink, text_block(s, 2 * rim, rim, middle - rim, split - rim, line, seed + 40));
-    if (has_columns) tone = mix(tone, picture({s.u - middle, s.v, s.width - middle, split, s.foot}, seed + 50), s.u > middle ? 1.0F : 0.0F);
+    if (has_columns)
+      tone = mix(tone, picture({s.u - middle, s.v, s.width - middle, split, s.foot}, seed + 50), s.u > middle ? 1.0F : 0.0F);
   }
   return mix(is_dark ? 0.9F : 0.3F, tone, inside);
 }
@@ -100,7 +104,9 @@ float paper(const Sheet& s, std::uint32_t seed) {
   const float ink = text_block(s, rim, rim, s.width - rim, s.height - rim, 0.012F, seed);
   const float title = text_block(s, rim, s.height - 2.6F * rim, s.width - rim, s.height - rim, 0.03F, seed + 1);
   const float figure_v = s.height * range(hash32(seed, 2), 0.2F, 0.5F);
-  const float figure = hash32(seed, 3) % 2U == 0U ? covered_rectangle(s.u, s.v, rim, figure_v, s.width - rim, figure_v + 0.2F * s.height, s.foot) : 0.0F;
+  const float figure = hash32(seed, 3) % 2U == 0U
+                           ? covered_rectangle(s.u, s.v, rim, figure_v, s.width - rim, figure_v + 0.2F * s.height, s.foot)
+                           : 0.0F;
   const float body = mix(0.92F, 0.15F, s.v > s.height - 2.6F * rim ? title : 0.8F * ink);
   return mix(body, figure > 0.0F ? picture({s.u, s.v - figure_v, s.width, 0.2F * s.height, s.foot}, seed + 4) : 0.5F, figure);
 }
@@ -112,14 +118,17 @@ float books(const Sheet& s, std::uint32_t seed) {
   const float board = covered(y, 0.0F, 0.025F, s.foot);
   const auto edge = [&](int i) { return (static_cast<float>(i) + range(hash_cell(i, row, seed), -0.3F, 0.3F)) * kBook; };
   int i = floor_int(s.u / kBook);
-  if (s.u < edge(i)) --i;
-  else if (s.u >= edge(i + 1)) ++i;
+  if (s.u < edge(i))
+    --i;
+  else if (s.u >= edge(i + 1))
+    ++i;
   const std::uint32_t h = hash_cell(i, row, seed + 1);
   const float left = edge(i), right = edge(i + 1), top = 0.025F + range(hash32(h, 1), 0.19F, 0.29F);
   const bool is_gap = h % 17U == 0U;
   const float body = is_gap ? 0.0F : covered(s.u, left + 0.0015F, right - 0.0015F, s.foot) * covered(y, 0.025F, top, s.foot);
   float tone = range(hash32(h, 2), 0.08F, 0.9F);
-  const float label_low = 0.05F + range(hash32(h, 3), 0.0F, 0.06F), label = covered(y, label_low, label_low + range(hash32(h, 4), 0.02F, 0.06F), s.foot);
+  const float label_low = 0.05F + range(hash32(h, 3), 0.0F, 0.06F),
+              label = covered(y, label_low, label_low + range(hash32(h, 4), 0.02F, 0.06F), s.foot);
   tone = mix(tone, tone > 0.5F ? 0.12F : 0.92F, 0.8F * label * static_cast<float>(hash32(h, 5) % 2U));
   // Titles run along the spine.
   const float title = y > 0.13F && y < top - 0.02F ? text_ink(y, s.u - left - 0.008F, 0.024F, h, s.foot) : 0.0F;
@@ -162,7 +171,8 @@ float whiteboard(const Sheet& s, std::uint32_t seed) {
   if (has_left_writing) ink = 0.8F * text_block(s, 0.1F, 0.2F, 0.45F * s.width, s.height - 0.1F, 0.07F, seed);
   // Contour lines of smooth noise look like free-hand curves.
   const float hills = value_noise(s.u / 0.18F, s.v / 0.18F, seed + 1);
-  if (s.u > 0.5F * s.width && s.u < 0.95F * s.width && s.v > 0.15F && s.v < s.height - 0.12F) ink = clamp01(1.5F - std::fabs(hills) * 0.08F / pen);
+  if (s.u > 0.5F * s.width && s.u < 0.95F * s.width && s.v > 0.15F && s.v < s.height - 0.12F)
+    ink = clamp01(1.5F - std::fabs(hills) * 0.08F / pen);
   return mix(0.45F, mix(0.93F, 0.2F, ink), inside);
 }
 
@@ -186,7 +196,8 @@ float pinboard(const Sheet& s, std::uint32_t seed) {
 float cardboard(const Sheet& s, const Skin& skin) {
   float tone = skin.tone + 0.05F * octaves(s.u, s.v, 0.08F, 4, 0.6F, skin.seed, s.foot);
   tone = mix(tone, skin.tone + 0.18F, covered(s.u, 0.45F * s.width, 0.57F * s.width, s.foot));
-  const float u0 = 0.1F * s.width, v0 = range(hash32(skin.seed, 1), 0.15F, 0.5F) * s.height, w = 0.3F * s.width, t = 0.25F * s.height;
+  const float u0 = 0.1F * s.width, v0 = range(hash32(skin.seed, 1), 0.15F, 0.5F) * s.height, w = 0.3F * s.width,
+              t = 0.25F * s.height;
   const float label = covered_rectangle(s.u, s.v, u0, v0, u0 + w, v0 + t, s.foot);
   const float ink = label > 0.0F ? text_ink(s.u - u0 - 0.01F, v0 + t - s.v, 0.03F, skin.seed + 2, s.foot) : 0.0F;
   tone = mix(tone, mix(0.93F, 0.1F, ink), label);

@@ -15,9 +15,9 @@ namespace camloc::sim {
 
 struct RecordingOptions {
   double rate_hz = 30;
-  double duration_scale = 1;       ///< only this share of the walk
-  int num_jobs = 1;                ///< threads; the files do not depend on it
-  int jpeg_quality = 92;           ///< 0 writes PNG
+  double duration_scale = 1;  ///< only this share of the walk
+  int num_jobs = 1;           ///< threads; the files do not depend on it
+  int jpeg_quality = 92;      ///< 0 writes PNG
   std::int64_t start_ns = 1700000000'000000000;
   FrameMakerOptions frames;
 };
@@ -26,7 +26,7 @@ struct RecordingOptions {
 using Progress = std::function<void(int, int)>;
 
 /// Number of frames written. `folder` must not exist or be empty.
-[[nodiscard]] Result<int> record(const World& world, const RgbdCamera& camera, const RecordingOptions& options, const std::string& folder,
-                                 const Progress& progress);
+[[nodiscard]] Result<int> record(const World& world, const RgbdCamera& camera, const RecordingOptions& options,
+                                 const std::string& folder, const Progress& progress);
 
 }  // namespace camloc::sim

@@ -66,15 +66,18 @@ void Renderer::draw(const Surface& surface, std::int32_t index) {
   if (!make_view(surface, &view)) return;
   std::array<Eigen::Vector3d, 4> corners;
   const Eigen::Vector3d origin = R_camera_world_ * (surface.origin - camera_position_);
-  const Eigen::Vector3d u = R_camera_world_ * surface.u_axis * surface.width, v = R_camera_world_ * surface.v_axis * surface.height;
+  const Eigen::Vector3d u = R_camera_world_ * surface.u_axis * surface.width,
+                        v = R_camera_world_ * surface.v_axis * surface.height;
   corners = {origin, origin + u, origin + u + v, origin + v};
   if (std::all_of(corners.begin(), corners.end(), [](const Eigen::Vector3d& p) { return p.z() < kNear; })) return;
   // Entirely outside one side plane of the view.
   const double left = -intrinsics_.cx / intrinsics_.fx, right = (intrinsics_.width - intrinsics_.cx) / intrinsics_.fx;
   const double top = -intrinsics_.cy / intrinsics_.fy, bottom = (intrinsics_.height - intrinsics_.cy) / intrinsics_.fy;
   const auto outside = [&](auto predicate) { return std::all_of(corners.begin(), corners.end(), predicate); };
-  if (outside([&](const Eigen::Vector3d& p) { return p.x() < left * p.z(); }) || outside([&](const Eigen::Vector3d& p) { return p.x() > right * p.z(); }) ||
-      outside([&](const Eigen::Vector3d& p) { return p.y() < top * p.z(); }) || outside([&](const Eigen::Vector3d& p) { return p.y() > bottom * p.z(); })) {
+  if (outside([&](const Eigen::Vector3d& p) { return p.x() < left * p.z(); }) ||
+      outside([&](const Eigen::Vector3d& p) { return p.x() > right * p.z(); }) ||
+      outside([&](const Eigen::Vector3d& p) { return p.y() < top * p.z(); }) ||
+      outside([&](const Eigen::Vector3d& p) { return p.y() > bottom * p.z(); })) {
     return;
   }
   polygon_.clear();
@@ -129,21 +132,24 @@ Renderer::Hit Renderer::intersect(const View& view, float ray_x, float ray_y) co
   const float inverse = dot(view.normal, ray_x, ray_y);
   const float depth = inverse > 1e-6F ? 1.0F / inverse : 1e6F;
   const float cosine = inverse / (view.inverse_distance * std::sqrt(ray_x * ray_x + ray_y * ray_y + 1.0F));
-  return {depth * dot(view.u_ray, ray_x, ray_y) + view.u_offset, depth * dot(view.v_ray, ray_x, ray_y) + view.v_offset, depth, cosine};
+  return {depth * dot(view.u_ray, ray_x, ray_y) + view.u_offset, depth * dot(view.v_ray, ray_x, ray_y) + view.v_offset, depth,
+          cosine};
 }
 
 float Renderer::shade(const View& view, const Hit& hit) const {
   const Surface& s = *view.surface;
   // Pixel size on the surface: halfway between its short side and its long, foreshortened one.
   const float foot = hit.depth / static_cast<float>(intrinsics_.fx) / std::sqrt(std::max(hit.cosine, 0.02F));
-  const float tone = std::max(0.02F, texture_tone(s.skin, hit.u + s.texture_u, hit.v + s.texture_v, s.texture_width, s.texture_height, foot));
+  const float tone =
+      std::max(0.02F, texture_tone(s.skin, hit.u + s.texture_u, hit.v + s.texture_v, s.texture_width, s.texture_height, foot));
   if (is_emissive(s.skin.material)) return 0.9F * tone * tone;
   const float x = std::clamp(hit.u / static_cast<float>(s.width), 0.0F, 0.9999F) * static_cast<float>(s.light_columns - 1);
   const float y = std::clamp(hit.v / static_cast<float>(s.height), 0.0F, 0.9999F) * static_cast<float>(s.light_rows - 1);
   const int i = static_cast<int>(x), j = static_cast<int>(y);
   const float fx = x - static_cast<float>(i), fy = y - static_cast<float>(j);
   const float* node = s.light.data() + j * s.light_columns + i;
-  const float low = node[0] + (node[1] - node[0]) * fx, high = node[s.light_columns] + (node[s.light_columns + 1] - node[s.light_columns]) * fx;
+  const float low = node[0] + (node[1] - node[0]) * fx,
+              high = node[s.light_columns] + (node[s.light_columns + 1] - node[s.light_columns]) * fx;
   return tone * tone * (low + (high - low) * fy);
 }
 
@@ -154,20 +160,24 @@ float Renderer::shade_silhouette(int x, int y) const {
     for (int dx = -1; dx <= 1; ++dx) {
       const int nx = std::clamp(x + dx, 0, intrinsics_.width - 1), ny = std::clamp(y + dy, 0, intrinsics_.height - 1);
       const std::int32_t id = rendering_.surface.at(nx, ny);
-      if (id >= 0 && std::find(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count), id) == ids.begin() + static_cast<std::ptrdiff_t>(count)) ids[count++] = id;
+      if (id >= 0 && std::find(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count), id) ==
+                         ids.begin() + static_cast<std::ptrdiff_t>(count))
+        ids[count++] = id;
     }
   }
   float sum = 0;
   for (int sample = 0; sample < 4; ++sample) {
     const double px = x + (sample & 1 ? 0.25 : -0.25), py = y + (sample & 2 ? 0.25 : -0.25);
-    const float ray_x = static_cast<float>((px - intrinsics_.cx) / intrinsics_.fx), ray_y = static_cast<float>((py - intrinsics_.cy) / intrinsics_.fy);
+    const float ray_x = static_cast<float>((px - intrinsics_.cx) / intrinsics_.fx),
+                ray_y = static_cast<float>((py - intrinsics_.cy) / intrinsics_.fy);
     const View* best = nullptr;
     Hit best_hit{0, 0, 1e6F, 0};
     for (std::size_t k = 0; k < count; ++k) {
       const View& view = views_[static_cast<std::size_t>(ids[k])];
       const Hit hit = intersect(view, ray_x, ray_y);
       constexpr float kSlack = 1e-3F;
-      const bool is_inside = hit.u > -kSlack && hit.v > -kSlack && hit.u < static_cast<float>(view.surface->width) + kSlack && hit.v < static_cast<float>(view.surface->height) + kSlack;
+      const bool is_inside = hit.u > -kSlack && hit.v > -kSlack && hit.u < static_cast<float>(view.surface->width) + kSlack &&
+                             hit.v < static_cast<float>(view.surface->height) + kSlack;
       if (is_inside && hit.depth < best_hit.depth) {
         best_hit = hit;
         best = &view;
@@ -189,7 +199,8 @@ void Renderer::shade_all() {
       const std::int32_t id = ids[x];
       const float inverse = inverse_depth_.at(x, y);
       rendering_.depth_m.at(x, y) = inverse > 0.0F ? 1.0F / inverse : 0.0F;
-      const bool is_silhouette = ids[std::max(x - 1, 0)] != id || ids[std::min(x + 1, width - 1)] != id || above[x] != id || below[x] != id;
+      const bool is_silhouette =
+          ids[std::max(x - 1, 0)] != id || ids[std::min(x + 1, width - 1)] != id || above[x] != id || below[x] != id;
       float radiance = 0, cosine = 0;
       if (id >= 0) {
         const View& view = views_[static_cast<std::size_t>(id)];

@@ -19,10 +19,10 @@ namespace camloc::sim {
 
 /// What an ideal camera sees.
 struct Rendering {
-  Image<float> radiance;            ///< linear, 0.2 is a usual indoor value
-  Image<float> depth_m;             ///< z of the nearest surface, 0 where there is none
-  Image<float> cosine;              ///< of the angle between ray and normal, 0 where there is no surface
-  Image<std::int32_t> surface;      ///< index into scene surfaces, then the extra ones; -1 none
+  Image<float> radiance;        ///< linear, 0.2 is a usual indoor value
+  Image<float> depth_m;         ///< z of the nearest surface, 0 where there is none
+  Image<float> cosine;          ///< of the angle between ray and normal, 0 where there is no surface
+  Image<std::int32_t> surface;  ///< index into scene surfaces, then the extra ones; -1 none
 };
 
 /// Not thread-safe; keeps its buffers. The scene must outlive it.
@@ -37,11 +37,11 @@ class Renderer {
   /// A surface's plane and axes in the camera frame of the current view.
   struct View {
     const Surface* surface = nullptr;
-    float normal[3] = {};       // inverse_depth = dot(normal, ray)
-    float u_ray[3] = {};        // u = depth * dot(u_ray, ray) + u_offset
+    float normal[3] = {};  // inverse_depth = dot(normal, ray)
+    float u_ray[3] = {};   // u = depth * dot(u_ray, ray) + u_offset
     float v_ray[3] = {};
     float u_offset = 0, v_offset = 0;
-    float inverse_distance = 0; // 1 / distance of the camera from the plane, > 0
+    float inverse_distance = 0;  // 1 / distance of the camera from the plane, > 0
   };
   struct Hit {
     float u, v, depth, cosine;
@@ -60,7 +60,7 @@ class Renderer {
   std::span<const Surface> extra_;
   Eigen::Matrix3d R_camera_world_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d camera_position_ = Eigen::Vector3d::Zero();
-  std::vector<View> views_;          // by surface index; only those drawn are valid
+  std::vector<View> views_;  // by surface index; only those drawn are valid
   Image<float> inverse_depth_;
   Rendering rendering_;
   std::vector<Eigen::Vector2d> polygon_;

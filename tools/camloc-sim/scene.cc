@@ -21,8 +21,8 @@ Placement Placement::child(double x, double y, double child_angle_rad) const {
   return {point(x, y, 0).head<2>(), angle_rad + child_angle_rad};
 }
 
-Surface& Scene::add(const Eigen::Vector3d& origin, const Eigen::Vector3d& u_axis, const Eigen::Vector3d& v_axis, double width, double height,
-                    const Skin& skin, int room) {
+Surface& Scene::add(const Eigen::Vector3d& origin, const Eigen::Vector3d& u_axis, const Eigen::Vector3d& v_axis, double width,
+                    double height, const Skin& skin, int room) {
   Surface s;
   s.origin = origin;
   s.u_axis = u_axis;
@@ -37,16 +37,20 @@ Surface& Scene::add(const Eigen::Vector3d& origin, const Eigen::Vector3d& u_axis
   return surfaces.back();
 }
 
-Surface& Scene::add_upright(const Placement& place, double x0, double y0, double x1, double y1, double z0, double z1, const Skin& skin, int room) {
+Surface& Scene::add_upright(const Placement& place, double x0, double y0, double x1, double y1, double z0, double z1,
+                            const Skin& skin, int room) {
   const double width = std::hypot(x1 - x0, y1 - y0);
-  return add(place.point(x0, y0, z0), place.direction((x1 - x0) / width, (y1 - y0) / width), Eigen::Vector3d::UnitZ(), width, z1 - z0, skin, room);
+  return add(place.point(x0, y0, z0), place.direction((x1 - x0) / width, (y1 - y0) / width), Eigen::Vector3d::UnitZ(), width,
+             z1 - z0, skin, room);
 }
 
-Surface& Scene::add_floor(const Placement& place, double x0, double y0, double x1, double y1, double z, const Skin& skin, int room) {
+Surface& Scene::add_floor(const Placement& place, double x0, double y0, double x1, double y1, double z, const Skin& skin,
+                          int room) {
   return add(place.point(x0, y0, z), place.direction(1, 0), place.direction(0, 1), x1 - x0, y1 - y0, skin, room);
 }
 
-Surface& Scene::add_ceiling(const Placement& place, double x0, double y0, double x1, double y1, double z, const Skin& skin, int room) {
+Surface& Scene::add_ceiling(const Placement& place, double x0, double y0, double x1, double y1, double z, const Skin& skin,
+                            int room) {
   return add(place.point(x0, y1, z), place.direction(1, 0), place.direction(0, -1), x1 - x0, y1 - y0, skin, room);
 }
 
@@ -88,7 +92,8 @@ void Scene::bake_light(Surface* surface) const {
   const Eigen::Vector3d normal = surface->normal();
   for (int j = 0; j < surface->light_rows; ++j) {
     for (int i = 0; i < surface->light_columns; ++i) {
-      const Eigen::Vector3d p = surface->at(surface->width * i / (surface->light_columns - 1), surface->height * j / (surface->light_rows - 1));
+      const Eigen::Vector3d p =
+          surface->at(surface->width * i / (surface->light_columns - 1), surface->height * j / (surface->light_rows - 1));
       surface->light.push_back(light_at(p, normal, surface->room));
     }
   }

@@ -19,12 +19,12 @@ struct Surface {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   Eigen::Vector3d u_axis = Eigen::Vector3d::UnitX();
   Eigen::Vector3d v_axis = Eigen::Vector3d::UnitY();
-  double width = 1, height = 1;     ///< metres
+  double width = 1, height = 1;  ///< metres
   Skin skin;
-  float texture_u = 0, texture_v = 0;          ///< texture coordinates of `origin`, metres: pieces of one wall line up
-  float texture_width = 1, texture_height = 1; ///< size of the whole thing the texture belongs to, metres
-  int room = 0;                                ///< lamps of other rooms do not reach it
-  bool is_static = true;                       ///< clutter and people are not in the LiDAR cloud
+  float texture_u = 0, texture_v = 0;           ///< texture coordinates of `origin`, metres: pieces of one wall line up
+  float texture_width = 1, texture_height = 1;  ///< size of the whole thing the texture belongs to, metres
+  int room = 0;                                 ///< lamps of other rooms do not reach it
+  bool is_static = true;                        ///< clutter and people are not in the LiDAR cloud
 
   // Light on the surface, filled by Scene::bake_light: nodes light_columns x light_rows, evenly spaced, borders included.
   int light_columns = 0, light_rows = 0;
@@ -53,7 +53,7 @@ struct Placement {
 
 /// Overall light of a day.
 struct DayLight {
-  double ambient = 0.22;        ///< light that comes from everywhere
+  double ambient = 0.22;                           ///< light that comes from everywhere
   Eigen::Vector3d tilt = Eigen::Vector3d::Zero();  ///< surfaces facing this way are brighter: colour and side of the light
 };
 
@@ -68,10 +68,11 @@ class Scene {
   DayLight day_light;
 
   /// A rectangle; returns it for further settings. Texture coordinates start at its origin.
-  Surface& add(const Eigen::Vector3d& origin, const Eigen::Vector3d& u_axis, const Eigen::Vector3d& v_axis, double width, double height,
-               const Skin& skin, int room);
+  Surface& add(const Eigen::Vector3d& origin, const Eigen::Vector3d& u_axis, const Eigen::Vector3d& v_axis, double width,
+               double height, const Skin& skin, int room);
   /// Upright rectangle from (x0, y0) to (x1, y1) in the placement, left to right as its viewer sees it, between two heights.
-  Surface& add_upright(const Placement& place, double x0, double y0, double x1, double y1, double z0, double z1, const Skin& skin, int room);
+  Surface& add_upright(const Placement& place, double x0, double y0, double x1, double y1, double z0, double z1, const Skin& skin,
+                       int room);
   /// Horizontal rectangle facing up.
   Surface& add_floor(const Placement& place, double x0, double y0, double x1, double y1, double z, const Skin& skin, int room);
   /// Horizontal rectangle facing down.

@@ -10,28 +10,28 @@
 namespace camloc::sim {
 
 enum class Material : std::uint8_t {
-  kPaint,       ///< wall paint: faint mottling and a few scuffs
-  kBlank,       ///< a wall without anything to hold on to
+  kPaint,  ///< wall paint: faint mottling and a few scuffs
+  kBlank,  ///< a wall without anything to hold on to
   kCarpet,
-  kTiles,       ///< floor tiles with speckles
-  kLinoleum,    ///< smooth floor, little contrast
-  kCeiling,     ///< panels in a grid with pinholes
+  kTiles,     ///< floor tiles with speckles
+  kLinoleum,  ///< smooth floor, little contrast
+  kCeiling,   ///< panels in a grid with pinholes
   kWood,
-  kPoster,      ///< layout, shapes and text by seed
-  kSign,        ///< plate with a few large glyphs
-  kPaper,       ///< sheet of small text
-  kBooks,       ///< front of a bookshelf
+  kPoster,  ///< layout, shapes and text by seed
+  kSign,    ///< plate with a few large glyphs
+  kPaper,   ///< sheet of small text
+  kBooks,   ///< front of a bookshelf
   kKeyboard,
-  kScreen,      ///< lit: ignores the lamps
+  kScreen,  ///< lit: ignores the lamps
   kWhiteboard,
   kPinboard,
   kCardboard,
-  kRibs,        ///< radiator
+  kRibs,  ///< radiator
   kFabric,
-  kCloth,       ///< what people wear
-  kLamp,        ///< lit
-  kWindow,      ///< lit by the day outside
-  kPlain,       ///< uniform plastic or metal
+  kCloth,   ///< what people wear
+  kLamp,    ///< lit
+  kWindow,  ///< lit by the day outside
+  kPlain,   ///< uniform plastic or metal
   kBrick,
 };
 

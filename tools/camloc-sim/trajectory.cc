@@ -73,7 +73,8 @@ std::vector<PathPoint> plan(const std::vector<Eigen::Vector2d>& path, const Walk
   std::vector<double> slow(speed);
   const int reach = static_cast<int>(0.12 / kSpacing), n = static_cast<int>(speed.size());
   for (int i = 0; i < n; ++i) {
-    for (int k = std::max(0, i - reach); k <= std::min(n - 1, i + reach); ++k) slow[static_cast<std::size_t>(i)] = std::min(slow[static_cast<std::size_t>(i)], speed[static_cast<std::size_t>(k)]);
+    for (int k = std::max(0, i - reach); k <= std::min(n - 1, i + reach); ++k)
+      slow[static_cast<std::size_t>(i)] = std::min(slow[static_cast<std::size_t>(i)], speed[static_cast<std::size_t>(k)]);
   }
   slow = gaussian_filter(slow, 0.05 / kSpacing);
   std::vector<PathPoint> result;
@@ -157,7 +158,8 @@ Trajectory::Twist Trajectory::twist(double time_s) const {
   constexpr double kHalf = 0.01;
   const Rigid3 before = pose(time_s - kHalf), after = pose(time_s + kHalf), now = pose(time_s);
   const double span = 2 * kHalf;
-  return {now.rotation.conjugate() * ((after.translation - before.translation) / span), log_so3(before.rotation.conjugate() * after.rotation) / span};
+  return {now.rotation.conjugate() * ((after.translation - before.translation) / span),
+          log_so3(before.rotation.conjugate() * after.rotation) / span};
 }
 
 }  // namespace camloc::sim

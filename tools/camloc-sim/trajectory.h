@@ -14,11 +14,11 @@ namespace camloc::sim {
 
 struct WalkStyle {
   std::uint32_t seed = 1;
-  double height_m = 1.62;         ///< mean height of the camera over the floor
-  double speed_m_s = 0.9;         ///< on straight stretches
+  double height_m = 1.62;        ///< mean height of the camera over the floor
+  double speed_m_s = 0.9;        ///< on straight stretches
   double turn_rate_rad_s = 0.8;  ///< slows down in bends to stay below
-  double pitch_rad = -0.12;       ///< mean, negative looks down
-  double look_rad = 0.35;         ///< amplitude of looking left and right
+  double pitch_rad = -0.12;      ///< mean, negative looks down
+  double look_rad = 0.35;        ///< amplitude of looking left and right
 };
 
 /// Camera pose over time, seconds from its start.

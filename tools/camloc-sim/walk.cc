@@ -20,7 +20,9 @@ class PathBuilder {
   PathBuilder(const FloorPlan& plan, double n) : plan_(plan), n_(n) {}
 
   void corridor(int side, double s) { corridor(side, s, n_); }
-  void corridor(int side, double s, double n) { path_.push_back(plan_.sides[static_cast<std::size_t>(side)].place.point(s, n, 0).head<2>()); }
+  void corridor(int side, double s, double n) {
+    path_.push_back(plan_.sides[static_cast<std::size_t>(side)].place.point(s, n, 0).head<2>());
+  }
   /// Round the corner from the end of `side` into the next one, or back with `is_reverse`.
   void corner(int side) { corridor(side, plan_.sides[static_cast<std::size_t>(side)].length - n_); }
   /// In by the door, a turn around the room, and out again. `shift` moves the turn sideways.
@@ -29,7 +31,8 @@ class PathBuilder {
     const Placement place = office_place(plan_, office);
     const double gap = -kWallThickness - (office.is_outer ? n_ : kCorridorWidth - n_);
     const double right = office.width - 1.55;
-    std::vector<Eigen::Vector2d> turn = {{1.5, 1.5}, {1.55 + shift, 2.5}, {2.2, 3.2 + shift}, {right, 2.8}, {right, 1.9 + shift}, {2.3, 1.0}};
+    std::vector<Eigen::Vector2d> turn = {{1.5, 1.5},   {1.55 + shift, 2.5},  {2.2, 3.2 + shift},
+                                         {right, 2.8}, {right, 1.9 + shift}, {2.3, 1.0}};
     if (!is_clockwise) std::reverse(turn.begin(), turn.end());
     const auto add = [&](double x, double y) { path_.push_back(place.point(x, y, 0).head<2>()); };
     add(1.37, gap);
@@ -121,7 +124,8 @@ double nearest_time(const Trajectory& trajectory, const Eigen::Vector2d& point) 
   return best_time;
 }
 
-Passer passer(const FloorPlan& plan, const Trajectory& trajectory, int side, double s, double speed, double n, double around_s, std::uint32_t seed) {
+Passer passer(const FloorPlan& plan, const Trajectory& trajectory, int side, double s, double speed, double n, double around_s,
+              std::uint32_t seed) {
   const Eigen::Vector2d point = plan.sides[static_cast<std::size_t>(side)].place.point(s, 1.1, 0).head<2>();
   const double time = nearest_time(trajectory, point);
   return {side, s, time, speed, n, time - around_s, time + around_s, seed};
@@ -159,11 +163,11 @@ std::vector<Passer> plan_passers(const FloorPlan& plan, const Trajectory& trajec
     result.push_back(passer(plan, trajectory, 1, 7.2, 0.0, 1.8, 1e6, seed + 1));
     return result;
   }
-  result.push_back(passer(plan, trajectory, 0, 18.0, -1.0, 0.4, 14.0, seed));           // comes towards the camera
-  result.push_back(passer(plan, trajectory, 1, 17.0, 0.95, 1.5, 12.0, seed + 1));       // walks ahead
+  result.push_back(passer(plan, trajectory, 0, 18.0, -1.0, 0.4, 14.0, seed));      // comes towards the camera
+  result.push_back(passer(plan, trajectory, 1, 17.0, 0.95, 1.5, 12.0, seed + 1));  // walks ahead
   result.back().meet_s += 2.5;
   result.push_back(passer(plan, trajectory, 2, 20.0, -1.1, 0.4, 14.0, seed + 2));
-  result.push_back(passer(plan, trajectory, 2, 48.0, 0.0, 0.35, 1e6, seed + 3));        // stands at the wall
+  result.push_back(passer(plan, trajectory, 2, 48.0, 0.0, 0.35, 1e6, seed + 3));  // stands at the wall
   result.push_back(passer(plan, trajectory, 3, 12.0, -0.9, 1.85, 14.0, seed));
   return result;
 }
