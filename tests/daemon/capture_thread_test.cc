@@ -45,14 +45,15 @@ class ScriptedSource : public FrameSource {
 /// Ignores its timeout until released.
 class HangingSource : public ScriptedSource {
  public:
-  explicit HangingSource(std::atomic<bool>* released) : ScriptedSource({}), released_(released) {}
+  HangingSource(std::atomic<bool>* hangs, std::atomic<bool>* released) : ScriptedSource({}), hangs_(hangs), released_(released) {}
   [[nodiscard]] Status next(FrameBuffer*, milliseconds) override {
+    *hangs_ = true;
     while (!*released_) std::this_thread::sleep_for(milliseconds(1));
     return {ErrorCode::kUnavailable, "released"};
   }
 
  private:
-  std::atomic<bool>* released_;
+  std::atomic<bool>*hangs_, *released_;
 };
 
 class CaptureThreadTest : public ::testing::Test {
@@ -156,6 +157,7 @@ TEST_F(CaptureThreadTest, TurnsGoOnWhileNothingArrives) {
 
 TEST_F(CaptureThreadTest, HangingSourceIsAbandoned) {
   // Outlives the test, as the process does for the daemon.
+  static std::atomic<bool> hangs{false};
   static std::atomic<bool> released{false};
   static std::atomic<bool> is_gone{false};
   struct Gone : HangingSource {
@@ -163,11 +165,11 @@ TEST_F(CaptureThreadTest, HangingSourceIsAbandoned) {
     ~Gone() override { is_gone = true; }
   };
   const auto open = [](const std::string&) -> Result<std::unique_ptr<FrameSource>> {
-    return std::unique_ptr<FrameSource>(std::make_unique<Gone>(&released));
+    return std::unique_ptr<FrameSource>(std::make_unique<Gone>(&hangs, &released));
   };
   {
     CaptureThread capture(options_, open, wake_.get());
-    ASSERT_TRUE(wait_until([&] { return capture.report().phase == CapturePhase::kStreaming; }));
+    ASSERT_TRUE(wait_until([] { return hangs.load(); }));
     EXPECT_FALSE(capture.stop(milliseconds(20)));
   }
   released = true;
