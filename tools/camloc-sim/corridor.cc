@@ -33,7 +33,7 @@ std::vector<Doorway> doorways_of(const FloorPlan& plan, int side, bool is_outer)
 Skin wall_skin(const Stretch& stretch) {
   const std::uint32_t seed = hash32(stretch.look, 100);
   if (stretch.is_blank) return {Material::kBlank, seed, 0.72F};
-  if (stretch.look % 5U == 1U) return {Material::kBrick, seed, 0.45F};
+  if (stretch.look % 10U == 1U) return {Material::kBrick, seed, 0.45F};
   return {Material::kPaint, seed, range(hash32(seed, 1), 0.62F, 0.82F)};
 }
 

@@ -31,15 +31,15 @@ float specks(const Point& p, float cell_m, float probability, float min_radius_m
 
 float paint(const Skin& s, const Point& p) {
   const float mottle =
-      0.025F * octaves(p.u, p.v, 0.8F, 3, 0.6F, s.seed, p.foot) + 0.020F * octaves(p.u, p.v, 0.04F, 3, 0.7F, s.seed + 7, p.foot);
+      0.025F * octaves(p.u, p.v, 0.8F, 2, 0.6F, s.seed, p.foot) + 0.020F * octaves(p.u, p.v, 0.04F, 2, 0.7F, s.seed + 7, p.foot);
   const float low = clamp01(1.0F - p.v / 0.9F);  // feet, chairs and trolleys leave their marks low on the wall
   const float scuff = specks(p, 0.30F, 0.10F + 0.35F * low, 0.004F, 0.02F, s.seed + 11);
   return s.tone + mottle - 0.22F * scuff;
 }
 
 float carpet(const Skin& s, const Point& p) {
-  return s.tone + 0.05F * octaves(p.u, p.v, 1.4F, 2, 0.6F, s.seed, p.foot) +
-         0.13F * octaves(p.u, p.v, 0.09F, 5, 0.7F, s.seed + 3, p.foot) -
+  return s.tone + 0.05F * octaves(p.u, p.v, 1.4F, 1, 0.6F, s.seed, p.foot) +
+         0.13F * octaves(p.u, p.v, 0.06F, 4, 0.75F, s.seed + 3, p.foot) -
          0.20F * specks(p, 0.22F, 0.3F, 0.006F, 0.02F, s.seed + 5);
 }
 
@@ -48,7 +48,7 @@ float tiles(const Skin& s, const Point& p) {
   const float tile = filtered_lattice(p.u / kTile, p.v / kTile, p.foot / kTile, 0.0F,
                                       [&](int i, int j) { return range(hash_cell(i, j, s.seed), -0.05F, 0.05F); });
   const float grout = std::max(covered_lines(p.u, kTile, 0.008F, p.foot), covered_lines(p.v, kTile, 0.008F, p.foot));
-  const float grain = 0.07F * octaves(p.u, p.v, 0.05F, 4, 0.8F, s.seed + 3, p.foot);
+  const float grain = 0.07F * octaves(p.u, p.v, 0.04F, 3, 0.8F, s.seed + 3, p.foot);
   return mix(s.tone + tile + grain - 0.25F * specks(p, 0.08F, 0.35F, 0.004F, 0.013F, s.seed + 9), s.tone - 0.28F, grout);
 }
 
@@ -58,7 +58,7 @@ float ceiling(const Skin& s, const Point& p) {
                                        [&](int i, int j) { return range(hash_cell(i, j, s.seed), -0.025F, 0.025F); });
   const float bar = std::max(covered_lines(p.u, kPanel, 0.024F, p.foot), covered_lines(p.v, kPanel, 0.024F, p.foot));
   const float holes = specks(p, 0.06F, 0.55F, 0.003F, 0.009F, s.seed + 5);
-  return mix(s.tone + panel + 0.03F * octaves(p.u, p.v, 0.05F, 3, 0.7F, s.seed + 2, p.foot) - 0.30F * holes, s.tone - 0.16F, bar);
+  return mix(s.tone + panel + 0.03F * octaves(p.u, p.v, 0.05F, 2, 0.7F, s.seed + 2, p.foot) - 0.30F * holes, s.tone - 0.16F, bar);
 }
 
 float wood(const Skin& s, const Point& p) {
@@ -101,7 +101,7 @@ float brick(const Skin& s, const Point& p) {
   const float shifted = p.u + (row % 2 == 0 ? 0.0F : 0.5F * kLength);
   const float mortar = std::max(covered_lines(shifted, kLength, 0.012F, p.foot), covered_lines(p.v, kHeight, 0.012F, p.foot));
   const float body = range(hash_cell(floor_int(shifted / kLength), row, s.seed), -0.12F, 0.12F) * resolved(kLength, p.foot);
-  return mix(s.tone + body + 0.07F * octaves(p.u, p.v, 0.06F, 4, 0.7F, s.seed + 1, p.foot), s.tone + 0.22F, mortar);
+  return mix(s.tone + body + 0.07F * octaves(p.u, p.v, 0.05F, 3, 0.7F, s.seed + 1, p.foot), s.tone + 0.22F, mortar);
 }
 
 float lamp(const Point& p, float width, float height) {

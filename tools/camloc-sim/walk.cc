@@ -106,8 +106,7 @@ std::vector<Eigen::Vector2d> small_path(const FloorPlan& plan, std::uint32_t day
   path.corridor(0, day == 1 ? 3.5 : 4.2);
   path.office(0, day == 1 ? 0.0 : 0.12, true);
   path.corner(0);
-  if (day == 1) path.office(1, 0.0, false);
-  path.corridor(1, day == 1 ? 6.3 : 5.0);
+  path.corridor(1, day == 1 ? 6.3 : 5.6);  // past the second office's open door
   return path.take();
 }
 
