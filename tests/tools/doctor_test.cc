@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/command_runner.h"
+#include "tests/tools/fake_daemon.h"
 #include "tools/camloc/commands.h"
 
 namespace camloc::tools {
@@ -94,6 +95,17 @@ TEST_F(DoctorTest, ALiveSourceIsAskedForAFrame) {
   install_camlocd("exit 0", "");
   const auto [document, exit_code] = examine({"--source", "sample://"});
   EXPECT_EQ(check(document, "camera")["level"], "ok") << check(document, "camera").dump();
+}
+
+TEST_F(DoctorTest, ARunningDaemonIsBelieved) {
+  install_camlocd("exit 0", "");
+  FakeDaemon daemon(folder_ / "control.sock",
+                    "{\"ok\":true,\"state\":\"NO_CAMERA\",\"is_calibration_suspect\":true,\"focal_scale\":1.17}\n");
+  const auto [document, exit_code] = examine({"--socket", folder_ / "control.sock", "--source", "v4l2:///dev/video0"});
+  EXPECT_EQ(check(document, "daemon")["level"], "ok");
+  EXPECT_EQ(check(document, "camera")["level"], "fail");  // not opened: it belongs to the daemon, which gets no frames from it
+  EXPECT_EQ(check(document, "calibration")["level"], "warn");
+  EXPECT_NE(check(document, "calibration")["detail"].get<std::string>().find("1.17"), std::string::npos);
 }
 
 TEST_F(DoctorTest, TextHasALineACheck) {

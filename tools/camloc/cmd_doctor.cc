@@ -99,12 +99,20 @@ Check check_map(const std::string& path) {
           ""};
 }
 
-Check check_camera_file(const std::string& path) {
-  if (path.empty()) return {"calibration", Level::kOk, "none configured: the source knows its own", ""};
-  const auto camera = read_camera_file(path);
-  if (!camera) return {"calibration", Level::kFailure, camera.status().message(), "correct that file or set another one"};
-  return {"calibration", Level::kOk,
-          path + ": " + std::to_string(camera->color.width) + "x" + std::to_string(camera->color.height), ""};
+/// `daemon` is the answer of a running camlocd, which may have seen that the calibration does not fit.
+Check check_camera_file(const std::string& path, const std::optional<nlohmann::ordered_json>& daemon) {
+  const std::string name = path.empty() ? "that of the source" : path;
+  if (!path.empty()) {
+    const auto camera = read_camera_file(path);
+    if (!camera) return {"calibration", Level::kFailure, camera.status().message(), "correct that file or set another one"};
+  }
+  if (daemon && daemon->value("is_calibration_suspect", false)) {
+    const double scale = daemon->value("focal_scale", 1.0);
+    return {"calibration", Level::kWarning,
+            name + ": the images fit the map with " + std::to_string(scale) + " times its focal length",
+            "set the calibration of this camera, or calibrate it"};
+  }
+  return {"calibration", Level::kOk, name, ""};
 }
 
 std::string known_schemes() {
@@ -191,7 +199,7 @@ std::vector<Check> examine(const DoctorOptions& options) {
   checks.push_back(check_daemon(settings.socket_path, &daemon));
   checks.push_back(check_map(settings.map_path));
   checks.push_back(check_source(settings.source_url, daemon));
-  checks.push_back(check_camera_file(settings.camera_path));
+  checks.push_back(check_camera_file(settings.camera_path, daemon));
   checks.push_back(check_lcm(settings.lcm_url));
   checks.push_back(check_cpu());
   checks.push_back(check_memory());
