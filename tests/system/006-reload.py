@@ -15,7 +15,7 @@ with scenario() as (folder, start, tap):
     before = daemon.wait_state("LOCALIZED")
 
     # A map renamed over the old one is taken on request only.
-    make_map(map_path, 66)
+    make_map(map_path, 570)
     assert daemon.command("status")["map_id"] == before["map_id"]
     assert daemon.command("reload") == {"ok": True}
     after = daemon.wait_state("LOCALIZED")

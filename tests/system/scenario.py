@@ -38,7 +38,7 @@ def add_route():
     subprocess.run(["ip", "route", "replace", "224.0.0.0/4", "dev", "lo"], check=True)
 
 
-def make_map(path, num_frames=60):
+def make_map(path, num_frames=600):
     """A map of the sample room; another number of frames is another map. Replaces the file by a rename."""
     subprocess.run([MAKE_SAMPLE_MAP, str(path), str(num_frames)], check=True)
 
