@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The camloc authors
 # SPDX-License-Identifier: Apache-2.0
-"""READY even with nothing there, STATUS, RELOADING with its time, WATCHDOG while things move and not otherwise, STOPPING."""
-import os
+"""READY even with nothing there, STATUS, RELOADING with its time, WATCHDOG while things move, STOPPING.
+
+That a hanging source starves the watchdog and does not hold up the stop is in tests/daemon (ProgressWatch, CaptureThread).
+"""
 import signal
 import time
 
@@ -38,23 +40,3 @@ with scenario() as (folder, start, tap):
     assert before_us <= stamp_us <= time.clock_gettime_ns(time.CLOCK_MONOTONIC) // 1000
     manager.wait_for("WATCHDOG=1", len(manager.heard))
     assert daemon.stop() == 0
-
-    # A source that hangs starves the watchdog though the main loop and its timer go on. Opening a FIFO that nobody
-    # writes to blocks in the kernel, as a broken driver does.
-    os.mkdir(folder / "hung")
-    os.mkfifo(folder / "hung" / "rgb.txt")
-    manager.heard.clear()
-    daemon = start(environment=environment, source__url=f"replay://{folder}/hung")
-    manager.wait_for("READY=1")
-    time.sleep(1.5)
-    manager.listen()
-    since = len(manager.heard)
-    assert daemon.command("status")["ok"], "the main loop lives"
-    time.sleep(2)
-    manager.listen()
-    if any(message == "WATCHDOG=1" for message in manager.heard[since:]):
-        assert daemon.log.matching("no camera"), "fed although the source hangs"
-        print("note: replay:// does not block on a FIFO; hanging sources are covered by the unit tests only")
-    begin = time.monotonic()
-    assert daemon.stop() == 0
-    assert time.monotonic() - begin < 3, "a hanging source does not hold up the stop"
