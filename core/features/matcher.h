@@ -94,7 +94,7 @@ struct CandidateSet {
 
 struct CandidateMatcherOptions {
   int max_distance = 64;
-  double max_ratio = 0.9;             ///< best / best of another landmark; 1 = off
+  double max_ratio = 1.0;             ///< best / best of another landmark; 1 = off
   bool is_mutual = true;              ///< the feature must also be the landmark's best
   double max_rotation_deviation_rad = 0.5;  ///< from the dominant rotation between mapped and seen orientation; <= 0 = off
 };

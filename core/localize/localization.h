@@ -62,6 +62,7 @@ struct Localization {
   double margin = 1;             ///< 1 - inliers of the best rival place / inliers
   double focal_scale = 1;        ///< true / assumed focal length as this frame sees it
   double depth_agreement = 1;    ///< share of inliers with depth whose depth agrees
+  double map_depth_agreement = 1;  ///< share of landmarks in view that lie on the measured surface rather than in free space
   std::uint32_t reset_counter = 0;  ///< grows with every global fix: poses before and after may differ by a jump
   double jump_m = 0;             ///< size of that jump, 0 while tracking
   std::array<std::int64_t, kNumStages> stage_ns{};  ///< zero when no clock was given

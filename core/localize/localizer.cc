@@ -154,6 +154,7 @@ const Localization& Localizer::finish(const Candidate& candidate) {
   result_.margin = candidate.margin;
   result_.focal_scale = hypothesis.focal_scale;
   result_.depth_agreement = hypothesis.depth_agreement;
+  result_.map_depth_agreement = hypothesis.map_depth_agreement;
   timer_.finish(Stage::kVerify);
   result_.stage_ns = timer_.stop();
   return result_;

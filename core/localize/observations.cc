@@ -23,16 +23,17 @@ FrameObservations::FrameObservations(const RgbdCamera& camera, const OrbOptions&
 
 bool FrameObservations::observe(const Frame& frame) {
   features_ = &none_;
+  depth_image_ = {};
   if (frame.gray.empty() || frame.gray.width != color_.width || frame.gray.height != color_.height) return false;
   features_ = &extractor_.extract(frame.gray);
   const auto& keypoints = features_->keypoints;
   const std::size_t count = std::min(keypoints.size(), x_.size());
-  const bool has_depth = use_depth_ && !frame.depth.empty();
+  if (use_depth_) depth_image_ = frame.depth;
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Vector2f ray = rays_.undistort(keypoints[i].u, keypoints[i].v);
     x_[i] = ray.x();
     y_[i] = ray.y();
-    depth_m_[i] = has_depth ? depth_lookup_.depth_at(frame.depth, keypoints[i].u, keypoints[i].v) : 0.0F;
+    depth_m_[i] = depth_at(keypoints[i].u, keypoints[i].v);
   }
   grid_.assign(keypoints);
   return true;

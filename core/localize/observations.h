@@ -28,6 +28,8 @@ class FrameObservations {
   [[nodiscard]] float x(std::size_t i) const { return x_[i]; }              ///< normalized, undistorted
   [[nodiscard]] float y(std::size_t i) const { return y_[i]; }
   [[nodiscard]] float depth_m(std::size_t i) const { return depth_m_[i]; }  ///< along the optical axis, 0 = none
+  /// Measured depth at any pixel of the current frame, metres, 0 = none. The frame's pixels must still be there.
+  [[nodiscard]] float depth_at(float u, float v) const { return depth_image_.empty() ? 0.0F : depth_lookup_.depth_at(depth_image_, u, v); }
   [[nodiscard]] float sigma_px(std::size_t i) const { return sigma_px_[features_->keypoints[i].level]; }
 
  private:
@@ -36,6 +38,7 @@ class FrameObservations {
   OrbExtractor extractor_;
   UndistortionTable rays_;
   DepthLookup depth_lookup_;
+  ImageView<std::uint16_t> depth_image_;
   FeatureGrid grid_;
   const Features* features_;
   Features none_;

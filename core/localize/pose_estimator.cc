@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace camloc {
 namespace {
@@ -13,6 +14,9 @@ constexpr int kSpreadRows = 6;
 /// The focal length is fitted to pairs this much farther off than inliers: a wrong one moves them.
 constexpr double kFocalReach = 3.0;
 constexpr int kMinPairs = 6;
+/// Landmarks whose depth is compared with the image, about; and how far they may be off besides noise, of their depth.
+constexpr std::size_t kMapDepthSamples = 300;
+constexpr double kMapDepthTolerance = 0.03;
 
 PnpRansacOptions sized(PnpRansacOptions options, int max_pairs) {
   options.max_pairs = max_pairs;
@@ -24,9 +28,8 @@ PnpRansacOptions sized(PnpRansacOptions options, int max_pairs) {
 PoseEstimator::PoseEstimator(const MapView& map, const RgbdCamera& camera, const OrbOptions& orb, const PoseEstimatorOptions& options,
                              StageTimer* timer)
     : map_(&map),
+      color_(camera.color),
       focal_px_(camera.color.mean_focal_px()),
-      width_(camera.color.width),
-      height_(camera.color.height),
       options_(options),
       local_(map, camera.color, options.local),
       guided_(options.guided, orb.num_features),
@@ -51,9 +54,8 @@ PoseHypothesis PoseEstimator::from_matches(const FrameObservations& frame, std::
 }
 
 std::span<const Match> PoseEstimator::match_around(const FrameObservations& frame, const Rigid3& T_map_camera, float radius_px) {
-  const auto visible = local_.project(T_map_camera, radius_px);
-  num_visible_ = static_cast<std::uint32_t>(visible.size());
-  const auto matches = guided_.match(frame.features(), frame.grid(), visible, map_->descriptors());
+  visible_ = local_.project(T_map_camera, radius_px);
+  const auto matches = guided_.match(frame.features(), frame.grid(), visible_, map_->descriptors());
   timer_->finish(Stage::kMatch);
   return matches;
 }
@@ -62,13 +64,14 @@ PoseHypothesis PoseEstimator::look_again(const FrameObservations& frame, const P
   PoseHypothesis again;
   const auto matches = match_around(frame, hypothesis.T_map_camera, options_.guided_radius_px);
   again.num_matches = static_cast<std::uint32_t>(matches.size());
-  again.num_visible = num_visible_;
+  again.num_visible = static_cast<std::uint32_t>(visible_.size());
   fill_pairs(frame, matches, pairs_.capacity());
   if (pairs_.size() < kMinPairs) return again;
   const PoseRefinementResult refined = refine_pose(pairs_, hypothesis.T_map_camera, focal_px_, options_.refinement, &inlier_mask_);
   if (refined.is_converged) {
     summarize(frame, refined, &again);
     measure_focal_scale(&again);
+    measure_map_depth(frame, visible_, &again);
   }
   timer_->finish(Stage::kEstimate);
   return again;
@@ -100,8 +103,8 @@ void PoseEstimator::summarize(const FrameObservations& frame, const PoseRefineme
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     if (inlier_mask_[i] == 0) continue;
     const Keypoint& keypoint = frame.features().keypoints[static_cast<std::size_t>(pairs_.feature[i])];
-    const int column = std::clamp(static_cast<int>(keypoint.u) * kSpreadColumns / width_, 0, kSpreadColumns - 1);
-    const int row = std::clamp(static_cast<int>(keypoint.v) * kSpreadRows / height_, 0, kSpreadRows - 1);
+    const int column = std::clamp(static_cast<int>(keypoint.u) * kSpreadColumns / color_.width, 0, kSpreadColumns - 1);
+    const int row = std::clamp(static_cast<int>(keypoint.v) * kSpreadRows / color_.height, 0, kSpreadRows - 1);
     occupied |= std::uint64_t{1} << (row * kSpreadColumns + column);
   }
   hypothesis->spread = static_cast<double>(std::popcount(occupied)) / (kSpreadColumns * kSpreadRows);
@@ -116,6 +119,26 @@ void PoseEstimator::measure_focal_scale(PoseHypothesis* hypothesis) {
   hypothesis->has_focal_scale = true;
   hypothesis->focal_scale = fitted.focal_scale;
   hypothesis->focal_scale_sigma = fitted.focal_scale_sigma;
+}
+
+// Landmarks in front of the measured surface by more than its noise are where the camera sees through: at a wrong pose
+// most are. Landmarks behind it are hidden and say nothing: people and moved things do that, too.
+void PoseEstimator::measure_map_depth(const FrameObservations& frame, std::span<const ProjectedLandmark> visible, PoseHypothesis* hypothesis) const {
+  const Rigid3 T_camera_map = hypothesis->T_map_camera.inverse();
+  const std::size_t step = std::max<std::size_t>(1, visible.size() / kMapDepthSamples);
+  std::uint32_t num_on_surface = 0, num_seen_through = 0;
+  for (std::size_t i = 0; i < visible.size(); i += step) {
+    const Eigen::Vector3d p_camera = T_camera_map * map_->position_m(static_cast<std::uint32_t>(visible[i].landmark)).cast<double>();
+    if (p_camera.z() <= 0) continue;
+    const Eigen::Vector2d pixel = color_.project(p_camera);
+    const double measured = frame.depth_at(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
+    if (measured <= 0) continue;
+    const double tolerance = kMapDepthTolerance * p_camera.z() + 3.0 * options_.refinement.depth_noise.sigma_m(p_camera.z());
+    if (std::abs(measured - p_camera.z()) <= tolerance) ++num_on_surface;
+    else if (measured > p_camera.z()) ++num_seen_through;
+  }
+  hypothesis->num_map_depth = num_on_surface + num_seen_through;
+  if (hypothesis->num_map_depth > 0) hypothesis->map_depth_agreement = static_cast<double>(num_on_surface) / hypothesis->num_map_depth;
 }
 
 }  // namespace camloc

@@ -32,6 +32,8 @@ struct PoseHypothesis {
   std::uint32_t num_with_depth = 0;
   double depth_agreement = 1;      ///< share of inliers with depth whose depth agrees
   double mean_relative_depth_error = 0;
+  std::uint32_t num_map_depth = 0;  ///< landmarks in view whose pixel has a measured depth and that nothing hides
+  double map_depth_agreement = 1;   ///< share of those that lie on the measured surface; the others are seen through
   double rms_px = 0;
   double focal_scale = 1;          ///< true / assumed focal length that fits these matches best
   double focal_scale_sigma = 1;
@@ -66,17 +68,18 @@ class PoseEstimator {
   void fill_pairs(const FrameObservations& frame, std::span<const Match> matches, std::size_t limit);
   void summarize(const FrameObservations& frame, const PoseRefinementResult& refined, PoseHypothesis* hypothesis) const;
   void measure_focal_scale(PoseHypothesis* hypothesis);
+  void measure_map_depth(const FrameObservations& frame, std::span<const ProjectedLandmark> visible, PoseHypothesis* hypothesis) const;
 
   const MapView* map_;
+  Intrinsics color_;
   double focal_px_;
-  int width_, height_;
   PoseEstimatorOptions options_;
   LocalLandmarks local_;
   GuidedMatcher guided_;
   PnpRansac ransac_;
   Correspondences pairs_;
   std::vector<std::uint8_t> inlier_mask_;
-  std::uint32_t num_visible_ = 0;
+  std::span<const ProjectedLandmark> visible_;  ///< of the last look
   StageTimer* timer_;
 };
 

@@ -8,16 +8,19 @@
 namespace camloc {
 
 Reason verify(const PoseHypothesis& hypothesis, double margin, bool is_tracked, const VerificationOptions& options) {
-  if (!hypothesis.is_found) return hypothesis.num_matches < options.min_matches ? Reason::kFewMatches : Reason::kFewInliers;
-  if (hypothesis.num_matches < options.min_matches) return Reason::kFewMatches;
+  const bool has_map_depth = hypothesis.num_map_depth >= options.min_map_depth_samples;
+  const bool has_inlier_depth = hypothesis.num_with_depth >= options.min_depth_samples;
+  const std::uint32_t min_inliers = is_tracked ? options.min_tracked_inliers : has_map_depth ? options.min_inliers : options.min_inliers_no_depth;
+
+  if (hypothesis.num_matches < min_inliers) return Reason::kFewMatches;
+  if (!hypothesis.is_found) return Reason::kFewInliers;
   if (is_calibration_mismatch(hypothesis, options)) return Reason::kCalibrationMismatch;
-  const std::uint32_t min_inliers = is_tracked ? options.min_tracked_inliers : options.min_inliers;
   if (hypothesis.num_inliers < min_inliers) return Reason::kFewInliers;
   if (hypothesis.inlier_ratio() < options.min_inlier_ratio) return Reason::kLowInlierRatio;
   if (hypothesis.spread < options.min_spread) return Reason::kPoorSpread;
   if (margin < options.min_margin) return Reason::kAmbiguous;
-  const bool can_judge_depth = hypothesis.num_with_depth >= options.min_depth_samples;
-  if (can_judge_depth && hypothesis.depth_agreement < options.min_depth_agreement) return Reason::kDepthInconsistent;
+  if (has_inlier_depth && hypothesis.depth_agreement < options.min_depth_agreement) return Reason::kDepthInconsistent;
+  if (has_map_depth && hypothesis.map_depth_agreement < options.min_map_depth_agreement) return Reason::kDepthInconsistent;
   const Vector6d variance = hypothesis.covariance.diagonal();
   if (!(variance.head<3>().maxCoeff() < options.max_position_sigma_m * options.max_position_sigma_m)) return Reason::kUncertain;
   if (!(variance.tail<3>().maxCoeff() < options.max_rotation_sigma_rad * options.max_rotation_sigma_rad)) return Reason::kUncertain;

@@ -21,7 +21,7 @@ struct MapBuildOptions {
   OrbOptions orb;
   std::uint64_t max_bytes = 0;   ///< of the file; 0 = no limit
   int num_words = 0;             ///< 0 = chosen from the number of landmarks
-  double fuse_radius_px = 4.0;   ///< a feature this close to a projected landmark may be another view of it
+  double fuse_radius_px = 2.5;   ///< a feature this close to a projected landmark may be another view of it
   int fuse_max_distance = 64;    ///< and its descriptor must be this close
   int appearance_distance = 48;  ///< an observation farther than this from all of a landmark's descriptors adds one
   int max_descriptors_per_landmark = 4;

@@ -65,6 +65,7 @@ Json record_json(const Localization& result) {
           {"spread", result.spread},
           {"margin", result.margin},
           {"depth_agreement", result.depth_agreement},
+          {"map_depth_agreement", result.map_depth_agreement},
           {"focal_scale", result.focal_scale},
           {"reset_counter", result.reset_counter},
           {"jump_m", result.jump_m},
