@@ -14,9 +14,13 @@ constexpr int kSpreadRows = 6;
 /// The focal length is fitted to pairs this much farther off than inliers: a wrong one moves them.
 constexpr double kFocalReach = 3.0;
 constexpr int kMinPairs = 6;
+/// Pairs closer than this in the image share their errors.
+constexpr int kPatchPx = 16;
 /// Landmarks whose depth is compared with the image, about; and how far they may be off besides noise, of their depth.
 constexpr std::size_t kMapDepthSamples = 300;
 constexpr double kMapDepthTolerance = 0.03;
+
+int patch_count(int pixels) { return pixels / kPatchPx + 1; }
 
 PnpRansacOptions sized(PnpRansacOptions options, int max_pairs) {
   options.max_pairs = max_pairs;
@@ -36,6 +40,7 @@ PoseEstimator::PoseEstimator(const MapView& map, const RgbdCamera& camera, const
       ransac_(sized(options.ransac, options.max_ransac_pairs)),
       pairs_(static_cast<std::size_t>(orb.num_features)),
       inlier_mask_(static_cast<std::size_t>(orb.num_features)),
+      is_patch_seen_(static_cast<std::size_t>(patch_count(camera.color.width) * patch_count(camera.color.height))),
       timer_(timer) {
   options_.refinement.depth_noise = camera.depth_noise;
 }
@@ -89,10 +94,10 @@ void PoseEstimator::fill_pairs(const FrameObservations& frame, std::span<const M
   pairs_.truncate(limit);
 }
 
-void PoseEstimator::summarize(const FrameObservations& frame, const PoseRefinementResult& refined, PoseHypothesis* hypothesis) const {
+void PoseEstimator::summarize(const FrameObservations& frame, const PoseRefinementResult& refined, PoseHypothesis* hypothesis) {
   hypothesis->is_found = true;
   hypothesis->T_map_camera = refined.T_map_camera;
-  hypothesis->covariance = refined.covariance;
+  hypothesis->covariance = refined.covariance * inliers_per_patch(frame);
   hypothesis->num_inliers = static_cast<std::uint32_t>(refined.num_inliers);
   hypothesis->num_with_depth = static_cast<std::uint32_t>(refined.num_with_depth);
   hypothesis->depth_agreement = refined.num_with_depth == 0 ? 1.0 : static_cast<double>(refined.num_depth_inliers) / refined.num_with_depth;
@@ -108,6 +113,24 @@ void PoseEstimator::summarize(const FrameObservations& frame, const PoseRefineme
     occupied |= std::uint64_t{1} << (row * kSpreadColumns + column);
   }
   hypothesis->spread = static_cast<double>(std::popcount(occupied)) / (kSpreadColumns * kSpreadRows);
+}
+
+// One corner is found on several pyramid levels, and its neighbours were mapped with the same depth error: pairs of one
+// patch are one observation, not many. Without this the covariance is too small by a factor of about two.
+double PoseEstimator::inliers_per_patch(const FrameObservations& frame) {
+  std::fill(is_patch_seen_.begin(), is_patch_seen_.end(), std::uint8_t{0});
+  const int columns = patch_count(color_.width);
+  int num_inliers = 0, num_patches = 0;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    if (inlier_mask_[i] == 0) continue;
+    const Keypoint& keypoint = frame.features().keypoints[static_cast<std::size_t>(pairs_.feature[i])];
+    const int column = static_cast<int>(keypoint.u) / kPatchPx, row = static_cast<int>(keypoint.v) / kPatchPx;
+    std::uint8_t& is_seen = is_patch_seen_[static_cast<std::size_t>(row * columns + column)];
+    num_patches += is_seen == 0 ? 1 : 0;
+    is_seen = 1;
+    ++num_inliers;
+  }
+  return num_patches == 0 ? 1.0 : static_cast<double>(num_inliers) / num_patches;
 }
 
 void PoseEstimator::measure_focal_scale(PoseHypothesis* hypothesis) {

@@ -66,7 +66,8 @@ class PoseEstimator {
 
  private:
   void fill_pairs(const FrameObservations& frame, std::span<const Match> matches, std::size_t limit);
-  void summarize(const FrameObservations& frame, const PoseRefinementResult& refined, PoseHypothesis* hypothesis) const;
+  void summarize(const FrameObservations& frame, const PoseRefinementResult& refined, PoseHypothesis* hypothesis);
+  [[nodiscard]] double inliers_per_patch(const FrameObservations& frame);
   void measure_focal_scale(PoseHypothesis* hypothesis);
   void measure_map_depth(const FrameObservations& frame, std::span<const ProjectedLandmark> visible, PoseHypothesis* hypothesis) const;
 
@@ -80,6 +81,7 @@ class PoseEstimator {
   Correspondences pairs_;
   std::vector<std::uint8_t> inlier_mask_;
   std::span<const ProjectedLandmark> visible_;  ///< of the last look
+  std::vector<std::uint8_t> is_patch_seen_;     ///< one byte per kPatchPx square of the image
   StageTimer* timer_;
 };
 
