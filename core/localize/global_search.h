@@ -28,8 +28,8 @@ struct GlobalSearchOptions {
   double place_angle_rad = 1.2;     ///< and viewing directions
   int max_candidates = 8000;        ///< descriptors of one place
   CandidateMatcherOptions matcher;
-  double rival_distance_m = 0.5;    ///< a hypothesis farther than this from the best is a rival
-  double rival_angle_rad = 0.35;
+  double rival_distance_m = 0.25;   ///< a hypothesis farther than this from the best is a rival
+  double rival_angle_rad = 0.2;
 };
 
 struct GlobalSearchResult {

@@ -10,8 +10,11 @@ namespace {
 
 /// After this long without a verified pose a prediction is no better than a global search.
 constexpr std::int64_t kMaxTrackingGapNs = 1'000'000'000;
-/// A fix that contradicts the motion so far must be found again within this time to be believed.
-constexpr std::int64_t kConfirmationNs = 1'000'000'000;
+/// For so long the last verified pose limits where the camera can be; a fix that contradicts it must be found twice
+/// within this time to be believed.
+constexpr std::int64_t kMotionMemoryNs = 1'000'000'000;
+/// From here on a pose needs no prediction to back it.
+constexpr std::uint32_t kStrongInliers = 60;
 /// A hypothesis with fewer inliers is not even a coarse place.
 constexpr std::uint32_t kMinCoarseInliers = 15;
 
@@ -84,9 +87,7 @@ Localizer::Candidate Localizer::track(const Frame& frame) {
   candidate.hypothesis = estimator_.from_matches(observations_, matches, frame.sequence);
   if (candidate.hypothesis.is_found) candidate.hypothesis = estimator_.look_again(observations_, candidate.hypothesis);
   candidate.reason = verify(candidate.hypothesis, candidate.margin, candidate.is_tracked, verification_);
-  if (candidate.reason == Reason::kNone && !motion_.is_plausible(frame.stamp_ns, candidate.hypothesis.T_map_camera)) {
-    candidate.reason = Reason::kImplausibleMotion;
-  }
+  if (candidate.reason == Reason::kNone && !fits_motion(frame, candidate.hypothesis)) candidate.reason = Reason::kImplausibleMotion;
   return candidate;
 }
 
@@ -94,15 +95,23 @@ Localizer::Candidate Localizer::search_globally(const Frame& frame) {
   const GlobalSearchResult found = global_search_.search(observations_, estimator_, frame.sequence);
   Candidate candidate{.hypothesis = found.best, .margin = found.margin, .is_tracked = false};
   candidate.reason = found.has_candidates ? verify(found.best, found.margin, candidate.is_tracked, verification_) : Reason::kNoCandidates;
-  if (candidate.reason == Reason::kNone && !is_confirmed(frame, found.best.T_map_camera)) candidate.reason = Reason::kImplausibleMotion;
+  if (candidate.reason == Reason::kNone && !fits_motion(frame, found.best) && !is_confirmed(frame, found.best)) candidate.reason = Reason::kImplausibleMotion;
   return candidate;
 }
 
-bool Localizer::is_confirmed(const Frame& frame, const Rigid3& T_map_camera) {
-  if (!is_recent(frame.stamp_ns, kConfirmationNs) || motion_.is_plausible(frame.stamp_ns, T_map_camera)) return true;
-  const bool is_second = unconfirmed_.has_fix() && frame.stamp_ns - unconfirmed_.last_stamp_ns() <= kConfirmationNs &&
-                         unconfirmed_.is_plausible(frame.stamp_ns, T_map_camera);
-  unconfirmed_.add_fix(frame.stamp_ns, T_map_camera, Matrix6d::Zero(), false);
+// A handful of inliers on a repeated texture can be one tile off, and depth does not tell: such a pose must be where the
+// motion so far expects it. Strong evidence may contradict the prediction within what a camera can do.
+bool Localizer::fits_motion(const Frame& frame, const PoseHypothesis& hypothesis) const {
+  if (!is_recent(frame.stamp_ns, kMotionMemoryNs)) return true;
+  if (hypothesis.num_inliers < kStrongInliers) return motion_.is_expected(frame.stamp_ns, hypothesis.T_map_camera, hypothesis.covariance);
+  return motion_.is_plausible(frame.stamp_ns, hypothesis.T_map_camera);
+}
+
+bool Localizer::is_confirmed(const Frame& frame, const PoseHypothesis& hypothesis) {
+  if (hypothesis.num_inliers < kStrongInliers) return false;
+  const bool is_second = unconfirmed_.has_fix() && frame.stamp_ns - unconfirmed_.last_stamp_ns() <= kMotionMemoryNs &&
+                         unconfirmed_.is_plausible(frame.stamp_ns, hypothesis.T_map_camera);
+  unconfirmed_.add_fix(frame.stamp_ns, hypothesis.T_map_camera, Matrix6d::Zero(), false);
   return is_second;
 }
 

@@ -53,7 +53,8 @@ class Localizer {
   void begin(const Frame& frame);
   [[nodiscard]] Candidate track(const Frame& frame);
   [[nodiscard]] Candidate search_globally(const Frame& frame);
-  [[nodiscard]] bool is_confirmed(const Frame& frame, const Rigid3& T_map_camera);
+  [[nodiscard]] bool fits_motion(const Frame& frame, const PoseHypothesis& hypothesis) const;
+  [[nodiscard]] bool is_confirmed(const Frame& frame, const PoseHypothesis& hypothesis);
   const Localization& accept(const Frame& frame, const Candidate& candidate);
   const Localization& decline(const Frame& frame, const Candidate& candidate);
   const Localization& finish(const Candidate& candidate);

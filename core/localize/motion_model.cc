@@ -46,6 +46,15 @@ Matrix6d MotionModel::predict_covariance(std::int64_t stamp_ns) const {
   return covariance;
 }
 
+bool MotionModel::is_expected(std::int64_t stamp_ns, const Rigid3& T_map_camera, const Matrix6d& covariance) const {
+  if (!has_fix_) return true;
+  const Vector6d error = pose_error(T_map_camera, predict(stamp_ns));
+  const Vector6d variance = (predict_covariance(stamp_ns) + covariance).diagonal();
+  const double limit = options_.expected_sigmas * options_.expected_sigmas;
+  return error.head<3>().squaredNorm() <= limit * variance.head<3>().maxCoeff() &&
+         error.tail<3>().squaredNorm() <= limit * variance.tail<3>().maxCoeff();
+}
+
 bool MotionModel::is_plausible(std::int64_t stamp_ns, const Rigid3& T_map_camera) const {
   if (!has_fix_) return true;
   const double dt = std::abs(seconds(stamp_ns - stamp_ns_));

@@ -16,6 +16,7 @@ struct MotionModelOptions {
   double max_turn_rad_per_s = 7.0;
   double speed_change_m_per_s = 0.4;         ///< standard deviation of what the velocity does until the next frame
   double turn_change_rad_per_s = 0.5;
+  double expected_sigmas = 3.0;              ///< is_expected(): of prediction and pose together, position and rotation each
   std::int64_t max_velocity_age_ns = 500'000'000;  ///< two fixes farther apart say nothing about velocity
 };
 
@@ -34,6 +35,8 @@ class MotionModel {
   [[nodiscard]] Rigid3 predict(std::int64_t stamp_ns) const;
   /// Covariance of that prediction, convention of pose_error().
   [[nodiscard]] Matrix6d predict_covariance(std::int64_t stamp_ns) const;
+  /// Is the pose where the prediction and its uncertainty expect it? Far narrower than is_plausible().
+  [[nodiscard]] bool is_expected(std::int64_t stamp_ns, const Rigid3& T_map_camera, const Matrix6d& covariance) const;
   /// Could the camera have gone from the last fix to this pose in that time?
   [[nodiscard]] bool is_plausible(std::int64_t stamp_ns, const Rigid3& T_map_camera) const;
 
