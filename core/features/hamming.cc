@@ -25,6 +25,11 @@ void distances_scalar(const Descriptor& query, const Descriptor* train, std::siz
   for (std::size_t i = 0; i < num_train; ++i) distances[i] = static_cast<std::uint16_t>(distance_scalar(query, train[i]));
 }
 
+void distances_at_scalar(const Descriptor& query, const Descriptor* train, const std::uint32_t* index, std::size_t count,
+                         std::uint16_t* distances) {
+  for (std::size_t i = 0; i < count; ++i) distances[i] = static_cast<std::uint16_t>(distance_scalar(query, train[index[i]]));
+}
+
 void nearest_scalar(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train,
                     TopTwo* top) {
   nearest_by_pairs(queries, num_queries, train, 0, num_train, top, distance_scalar);
@@ -48,7 +53,7 @@ bool is_available(HammingKernel kernel) {
 
 }  // namespace
 
-const Kernels kScalarKernels{distance_scalar, distances_scalar, nearest_scalar};
+const Kernels kScalarKernels{distance_scalar, distances_scalar, distances_at_scalar, nearest_scalar};
 
 const Kernels& kernels_of(HammingKernel kernel) {
   assert(is_available(kernel));

@@ -41,6 +41,9 @@ inline constexpr std::size_t kMaxQueriesPerCall = 64;
 struct Kernels {
   int (*distance)(const Descriptor& a, const Descriptor& b);
   void (*distances)(const Descriptor& query, const Descriptor* train, std::size_t num_train, std::uint16_t* distances);
+  /// Distance from `query` to train[index[i]], i < count.
+  void (*distances_at)(const Descriptor& query, const Descriptor* train, const std::uint32_t* index, std::size_t count,
+                       std::uint16_t* distances);
   /// Adds all of `train` to top[0 .. num_queries); num_queries <= kMaxQueriesPerCall.
   void (*nearest)(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train,
                   TopTwo* top);

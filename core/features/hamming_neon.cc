@@ -20,6 +20,11 @@ void distances_neon(const Descriptor& query, const Descriptor* train, std::size_
   for (std::size_t i = 0; i < num_train; ++i) distances[i] = static_cast<std::uint16_t>(distance_neon(query, train[i]));
 }
 
+void distances_at_neon(const Descriptor& query, const Descriptor* train, const std::uint32_t* index, std::size_t count,
+                       std::uint16_t* distances) {
+  for (std::size_t i = 0; i < count; ++i) distances[i] = static_cast<std::uint16_t>(distance_neon(query, train[index[i]]));
+}
+
 void nearest_neon(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train,
                   TopTwo* top) {
   nearest_by_pairs(queries, num_queries, train, 0, num_train, top, distance_neon);
@@ -27,7 +32,7 @@ void nearest_neon(const Descriptor* queries, std::size_t num_queries, const Desc
 
 }  // namespace
 
-const Kernels kNeonKernels{distance_neon, distances_neon, nearest_neon};
+const Kernels kNeonKernels{distance_neon, distances_neon, distances_at_neon, nearest_neon};
 
 }  // namespace camloc::hamming
 #endif

@@ -45,6 +45,13 @@ __attribute__((target("popcnt"))) void distances_popcnt(const Descriptor& query,
   for (std::size_t i = 0; i < num_train; ++i) distances[i] = static_cast<std::uint16_t>(distance_popcnt(query, train[i]));
 }
 
+__attribute__((target("popcnt"))) void distances_at_popcnt(const Descriptor& query, const Descriptor* train,
+                                                           const std::uint32_t* index, std::size_t count,
+                                                           std::uint16_t* distances) {
+  const Descriptor q = query;  // stays in registers: `distances` might alias it
+  for (std::size_t i = 0; i < count; ++i) distances[i] = static_cast<std::uint16_t>(distance_popcnt(q, train[index[i]]));
+}
+
 __attribute__((target("popcnt"))) void nearest_range_popcnt(const Descriptor* queries, std::size_t num_queries,
                                                             const Descriptor* train, std::size_t begin, std::size_t end,
                                                             TopTwo* top) {
@@ -235,9 +242,9 @@ void nearest_avx512(const Descriptor* queries, std::size_t num_queries, const De
 
 }  // namespace
 
-const Kernels kPopcntKernels{distance_popcnt, distances_popcnt, nearest_popcnt};
-const Kernels kAvx2Kernels{distance_popcnt, distances_popcnt, nearest_avx2};
-const Kernels kAvx512Kernels{distance_popcnt, distances_avx512, nearest_avx512};
+const Kernels kPopcntKernels{distance_popcnt, distances_popcnt, distances_at_popcnt, nearest_popcnt};
+const Kernels kAvx2Kernels{distance_popcnt, distances_popcnt, distances_at_popcnt, nearest_avx2};
+const Kernels kAvx512Kernels{distance_popcnt, distances_avx512, distances_at_popcnt, nearest_avx512};
 
 }  // namespace camloc::hamming
 #endif

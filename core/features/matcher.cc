@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdlib>
+#include <limits>
 
 #include "core/features/hamming_kernels.h"
 
@@ -51,59 +52,101 @@ void FeatureGrid::assign(std::span<const Keypoint> keypoints) {
   }
 }
 
-std::span<const std::int32_t> FeatureGrid::bucket(int column, int row) const {
-  assert(column >= 0 && column < columns_ && row >= 0 && row < rows_);
-  const auto index = static_cast<std::size_t>(row * columns_ + column);
-  return {feature_.data() + bucket_begin_[index], static_cast<std::size_t>(bucket_begin_[index + 1] - bucket_begin_[index])};
+std::span<const std::int32_t> FeatureGrid::buckets(int first_column, int last_column, int row) const {
+  assert(first_column >= 0 && first_column <= last_column && last_column < columns_ && row >= 0 && row < rows_);
+  const std::int32_t begin = bucket_begin_[static_cast<std::size_t>(row * columns_ + first_column)];
+  const std::int32_t end = bucket_begin_[static_cast<std::size_t>(row * columns_ + last_column) + 1];
+  return {feature_.data() + begin, static_cast<std::size_t>(end - begin)};
+}
+
+void GuidedMatcher::FeatureTable::assign(const Features& from, const FeatureGrid& grid) {
+  const std::span<const std::int32_t> order = grid.all();
+  size = std::min(order.size(), features.size());
+  for (std::size_t position = 0; position < size; ++position) {
+    features[position] = order[position];
+    const auto index = static_cast<std::size_t>(order[position]);
+    if (index >= from.size()) {
+      u[position] = std::numeric_limits<float>::quiet_NaN();  // the grid is of another frame: in no window
+      continue;
+    }
+    u[position] = from.keypoints[index].u;
+    v[position] = from.keypoints[index].v;
+    levels[position] = from.keypoints[index].level;
+    descriptors[position] = from.descriptors[index];
+  }
 }
 
 GuidedMatcher::GuidedMatcher(const GuidedMatcherOptions& options, int max_features)
-    : options_(options), best_of_feature_(static_cast<std::size_t>(max_features)) {
+    : options_(options),
+      best_of_feature_(static_cast<std::size_t>(max_features)),
+      table_(static_cast<std::size_t>(max_features)),
+      window_(static_cast<std::size_t>(max_features)),
+      distances_(static_cast<std::size_t>(max_features)),
+      appearance_distances_(static_cast<std::size_t>(max_features)) {
   matches_.reserve(static_cast<std::size_t>(std::max(0, options.max_matches)));
-  window_.reserve(static_cast<std::size_t>(max_features));
 }
 
-void GuidedMatcher::collect_window(const Features& features, const FeatureGrid& grid, const ProjectedLandmark& landmark,
-                                   std::span<const Descriptor> descriptors) {
-  window_.clear();
+void GuidedMatcher::collect_window(const FeatureGrid& grid, const ProjectedLandmark& landmark) {
+  window_size_ = 0;
   const float radius = landmark.radius_px;
-  if (!(landmark.u + radius >= 0) || !(landmark.v + radius >= 0) || landmark.first_descriptor >= descriptors.size()) return;
-  const std::span<const Descriptor> appearances = descriptors.subspan(
-      landmark.first_descriptor,
-      std::min<std::size_t>(landmark.num_descriptors, descriptors.size() - landmark.first_descriptor));
-  const auto distance = hamming::best_kernels().distance;
+  if (!(landmark.u + radius >= 0) || !(landmark.v + radius >= 0) || landmark.min_level > landmark.max_level) return;
   const int first_column = clamped_cell(landmark.u - radius, grid.cell_px(), grid.columns());
   const int last_column = clamped_cell(landmark.u + radius, grid.cell_px(), grid.columns());
   const int first_row = clamped_cell(landmark.v - radius, grid.cell_px(), grid.rows());
   const int last_row = clamped_cell(landmark.v + radius, grid.cell_px(), grid.rows());
-  for (int row = first_row; row <= last_row; ++row)
-    for (int column = first_column; column <= last_column; ++column)
-      for (const std::int32_t feature : grid.bucket(column, row)) {
-        const auto index = static_cast<std::size_t>(feature);
-        if (index >= features.size() || window_.size() == window_.capacity()) break;
-        const Keypoint& keypoint = features.keypoints[index];
-        const float du = keypoint.u - landmark.u, dv = keypoint.v - landmark.v;
-        if (!(du * du + dv * dv <= radius * radius)) continue;
-        if (keypoint.level < landmark.min_level || keypoint.level > landmark.max_level) continue;
-        int smallest = kNoDistance;
-        for (const Descriptor& appearance : appearances)
-          smallest = std::min(smallest, distance(appearance, features.descriptors[index]));
-        window_.push_back({feature, keypoint.level, static_cast<std::uint16_t>(smallest)});
-      }
+  if (last_column < first_column) return;
+  const float squared_radius = radius * radius;
+  const unsigned min_level = landmark.min_level, num_levels = landmark.max_level - min_level;
+  const float *u = table_.u.data(), *v = table_.v.data();
+  const std::uint8_t* levels = table_.levels.data();
+  std::uint32_t* window = window_.data();
+  std::size_t count = 0;
+  for (int row = first_row; row <= last_row; ++row) {
+    const std::span<const std::int32_t> stretch = grid.buckets(first_column, last_column, row);
+    const auto begin = static_cast<std::size_t>(stretch.data() - grid.all().data());
+    const std::size_t end = std::min(begin + stretch.size(), table_.size);
+    for (std::size_t i = begin; i < end; ++i) {
+      // Without a branch: which features are inside cannot be predicted.
+      const float du = u[i] - landmark.u, dv = v[i] - landmark.v;
+      window[count] = static_cast<std::uint32_t>(i);
+      count += static_cast<std::size_t>((du * du + dv * dv <= squared_radius) & (levels[i] - min_level <= num_levels));
+    }
+  }
+  window_size_ = count;
+}
+
+void GuidedMatcher::measure_window(std::span<const Descriptor> appearances) {
+  const auto distances_at = hamming::best_kernels().distances_at;
+  std::fill_n(distances_.begin(), window_size_, kNoDistance);
+  for (std::size_t k = 0; k < appearances.size(); ++k) {
+    std::uint16_t* const distances = k == 0 ? distances_.data() : appearance_distances_.data();
+    distances_at(appearances[k], table_.descriptors.data(), window_.data(), window_size_, distances);
+    if (k == 0) continue;
+    for (std::size_t i = 0; i < window_size_; ++i) distances_[i] = std::min(distances_[i], appearance_distances_[i]);
+  }
 }
 
 Match GuidedMatcher::best_in_window() const {
-  const auto best = std::min_element(window_.begin(), window_.end(), [](const WindowFeature& a, const WindowFeature& b) {
-    return a.distance != b.distance ? a.distance < b.distance : a.feature < b.feature;
-  });
+  // Equal distances: the first feature. A key has the distance in its upper half.
+  std::uint64_t best_key = std::uint64_t{kNoDistance} << 32;
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < window_size_; ++i) {
+    const std::uint64_t key = std::uint64_t{distances_[i]} << 32 | static_cast<std::uint32_t>(table_.features[window_[i]]);
+    best = key < best_key ? i : best;
+    best_key = std::min(key, best_key);
+  }
   Match match;
-  if (best == window_.end() || best->distance > options_.max_distance) return match;
+  const auto distance = static_cast<std::uint16_t>(best_key >> 32);
+  if (distance >= kNoDistance || distance > options_.max_distance) return match;
   // Features of the same spot on a far level are no rivals: they describe the landmark at another scale.
-  for (auto rival = window_.begin(); rival != window_.end(); ++rival)
-    if (rival != best && std::abs(rival->level - best->level) <= 1) match.second = std::min(match.second, rival->distance);
-  if (options_.max_ratio < 1 && best->distance > options_.max_ratio * match.second) return Match{};
-  match.feature = best->feature;
-  match.distance = best->distance;
+  const int best_level = table_.levels[window_[best]];
+  for (std::size_t i = 0; i < window_size_; ++i) {
+    const bool is_rival = (i != best) & (std::abs(table_.levels[window_[i]] - best_level) <= 1);
+    match.second = std::min(match.second, is_rival ? distances_[i] : kNoDistance);
+  }
+  if (options_.max_ratio < 1 && distance > options_.max_ratio * match.second) return Match{};
+  match.feature = static_cast<std::int32_t>(best_key & 0xffffffffU);
+  match.distance = distance;
   return match;
 }
 
@@ -111,8 +154,13 @@ std::span<const Match> GuidedMatcher::match(const Features& features, const Feat
                                             std::span<const ProjectedLandmark> landmarks,
                                             std::span<const Descriptor> descriptors) {
   std::fill(best_of_feature_.begin(), best_of_feature_.end(), Match{});
+  table_.assign(features, grid);
   for (const ProjectedLandmark& landmark : landmarks) {
-    collect_window(features, grid, landmark, descriptors);
+    if (landmark.first_descriptor >= descriptors.size()) continue;
+    collect_window(grid, landmark);
+    if (window_size_ == 0) continue;
+    const std::size_t num_left = descriptors.size() - landmark.first_descriptor;
+    measure_window(descriptors.subspan(landmark.first_descriptor, std::min<std::size_t>(landmark.num_descriptors, num_left)));
     Match match = best_in_window();
     if (match.feature < 0 || static_cast<std::size_t>(match.feature) >= best_of_feature_.size()) continue;
     match.landmark = landmark.landmark;

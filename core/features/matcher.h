@@ -31,7 +31,13 @@ class FeatureGrid {
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] int cell_px() const { return cell_px_; }
   /// Feature indices in one bucket.
-  [[nodiscard]] std::span<const std::int32_t> bucket(int column, int row) const;
+  [[nodiscard]] std::span<const std::int32_t> bucket(int column, int row) const { return buckets(column, column, row); }
+  /// Feature indices in neighbouring buckets of one row, first and last column included.
+  [[nodiscard]] std::span<const std::int32_t> buckets(int first_column, int last_column, int row) const;
+  /// All feature indices, bucket by bucket: what buckets() hands out are pieces of this.
+  [[nodiscard]] std::span<const std::int32_t> all() const {
+    return {feature_.data(), static_cast<std::size_t>(bucket_begin_.back())};
+  }
 
  private:
   [[nodiscard]] int bucket_of(const Keypoint& keypoint) const;
@@ -65,19 +71,32 @@ class GuidedMatcher {
                                std::span<const Descriptor> descriptors);
 
  private:
-  struct WindowFeature {
-    std::int32_t feature;
-    std::int32_t level;
-    std::uint16_t distance;
+  /// The frame's features in the order of the grid, so that a window is a few stretches of memory. A position is an index
+  /// into these.
+  struct FeatureTable {
+    explicit FeatureTable(std::size_t max_features)
+        : u(max_features), v(max_features), levels(max_features), features(max_features), descriptors(max_features) {}
+    void assign(const Features& from, const FeatureGrid& grid);
+
+    std::size_t size = 0;
+    std::vector<float> u, v;
+    std::vector<std::uint8_t> levels;
+    std::vector<std::int32_t> features;
+    std::vector<Descriptor> descriptors;
   };
-  void collect_window(const Features& features, const FeatureGrid& grid, const ProjectedLandmark& landmark,
-                      std::span<const Descriptor> descriptors);
+
+  void collect_window(const FeatureGrid& grid, const ProjectedLandmark& landmark);
+  void measure_window(std::span<const Descriptor> appearances);
   [[nodiscard]] Match best_in_window() const;
 
   GuidedMatcherOptions options_;
   std::vector<Match> best_of_feature_;
   std::vector<Match> matches_;
-  std::vector<WindowFeature> window_;  ///< features in the window of the landmark at hand
+  FeatureTable table_;
+  // The window of the landmark at hand: positions in the table, smallest distances, and those of one appearance.
+  std::size_t window_size_ = 0;
+  std::vector<std::uint32_t> window_;
+  std::vector<std::uint16_t> distances_, appearance_distances_;
 };
 
 /// Candidate descriptors gathered from the map, structure of arrays. Capacity is fixed at construction.
