@@ -6,6 +6,15 @@
 #include <cmath>
 
 namespace camloc {
+namespace {
+
+PoseHypothesis solve(const FrameObservations& frame, PoseEstimator& estimator, std::span<const Match> matches, std::uint64_t seed,
+                     const Rigid3* T_map_explained) {
+  const PoseHypothesis hypothesis = estimator.from_matches(frame, matches, seed, T_map_explained);
+  return hypothesis.is_found ? estimator.look_again(frame, hypothesis) : hypothesis;
+}
+
+}  // namespace
 
 GlobalSearch::GlobalSearch(const MapView& map, const OrbOptions& orb, const GlobalSearchOptions& options, StageTimer* timer)
     : map_(&map),
@@ -27,29 +36,35 @@ GlobalSearchResult GlobalSearch::search(const FrameObservations& frame, PoseEsti
   result.has_candidates = num_places_ > 0;
   timer_->finish(Stage::kCandidates);
 
-  std::array<PoseHypothesis, kMaxPlaces> hypotheses;
-  int best = -1;
+  num_hypotheses_ = 0;
   for (int i = 0; i < num_places_; ++i) {
     gather_candidates(places_[static_cast<std::size_t>(i)]);
     const auto matches = matcher_.match(frame.features(), candidates_);
     timer_->finish(Stage::kMatch);
-    PoseHypothesis& hypothesis = hypotheses[static_cast<std::size_t>(i)];
-    hypothesis = estimator.from_matches(frame, matches, seed + static_cast<std::uint64_t>(i));
-    if (hypothesis.is_found) hypothesis = estimator.look_again(frame, hypothesis);
+    const std::uint64_t place_seed = seed * kMaxPlaces + static_cast<std::uint64_t>(i);
+    const PoseHypothesis hypothesis = solve(frame, estimator, matches, place_seed, nullptr);
     if (!hypothesis.is_found) continue;
-    if (best < 0 || hypothesis.num_inliers > hypotheses[static_cast<std::size_t>(best)].num_inliers) best = i;
+    consider(hypothesis);
+    if (hypothesis.num_inliers < options_.thin_inliers) consider(solve(frame, estimator, matches, place_seed, &hypothesis.T_map_camera));
   }
-  if (best < 0) return result;
-
-  result.best = hypotheses[static_cast<std::size_t>(best)];
-  std::uint32_t rival_inliers = 0;
-  for (int i = 0; i < num_places_; ++i) {
-    const PoseHypothesis& other = hypotheses[static_cast<std::size_t>(i)];
-    if (!other.is_found || i == best || is_same_place(other.T_map_camera, result.best.T_map_camera)) continue;
-    rival_inliers = std::max(rival_inliers, other.num_inliers);
+  for (std::size_t i = 0; i < num_hypotheses_; ++i) {
+    if (!result.best.is_found || hypotheses_[i].num_inliers > result.best.num_inliers) result.best = hypotheses_[i];
   }
-  result.margin = result.best.num_inliers == 0 ? 0.0 : 1.0 - static_cast<double>(rival_inliers) / result.best.num_inliers;
+  result.margin = margin_of(result.best);
   return result;
+}
+
+void GlobalSearch::consider(const PoseHypothesis& hypothesis) {
+  if (hypothesis.is_found && num_hypotheses_ < hypotheses_.size()) hypotheses_[num_hypotheses_++] = hypothesis;
+}
+
+double GlobalSearch::margin_of(const PoseHypothesis& best) const {
+  if (!best.is_found || best.num_inliers == 0) return 0.0;
+  std::uint32_t rival_inliers = 0;
+  for (std::size_t i = 0; i < num_hypotheses_; ++i) {
+    if (!is_same_place(hypotheses_[i].T_map_camera, best.T_map_camera)) rival_inliers = std::max(rival_inliers, hypotheses_[i].num_inliers);
+  }
+  return 1.0 - static_cast<double>(rival_inliers) / best.num_inliers;
 }
 
 void GlobalSearch::gather_places(std::span<const RetrievedKeyframe> retrieved) {

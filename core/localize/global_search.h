@@ -28,6 +28,9 @@ struct GlobalSearchOptions {
   double place_angle_rad = 1.2;     ///< and viewing directions
   int max_candidates = 8000;        ///< descriptors of one place
   CandidateMatcherOptions matcher;
+  /// Up to here a hypothesis is thin: on a repeated texture the matches may split between two poses, so the matches that
+  /// it leaves over are asked for another one.
+  std::uint32_t thin_inliers = 80;
   double rival_distance_m = 0.25;   ///< a hypothesis farther than this from the best is a rival
   double rival_angle_rad = 0.2;
 };
@@ -53,6 +56,8 @@ class GlobalSearch {
     int num_keyframes = 0;
   };
 
+  void consider(const PoseHypothesis& hypothesis);
+  [[nodiscard]] double margin_of(const PoseHypothesis& best) const;
   void gather_places(std::span<const RetrievedKeyframe> retrieved);
   void gather_candidates(const Place& place);
   [[nodiscard]] bool is_same_place(const Rigid3& a, const Rigid3& b) const;
@@ -67,6 +72,8 @@ class GlobalSearch {
   std::uint32_t visit_ = 0;
   std::array<Place, kMaxPlaces> places_;
   int num_places_ = 0;
+  std::array<PoseHypothesis, 2 * kMaxPlaces> hypotheses_;   ///< of this frame, looked at again
+  std::size_t num_hypotheses_ = 0;
   StageTimer* timer_;
 };
 

@@ -13,6 +13,8 @@ constexpr int kSpreadColumns = 8;
 constexpr int kSpreadRows = 6;
 /// The focal length is fitted to pairs this much farther off than inliers: a wrong one moves them.
 constexpr double kFocalReach = 3.0;
+/// A match this many inlier thresholds from a pose still belongs to it.
+constexpr double kExplainedReach = 2.0;
 constexpr int kMinPairs = 6;
 /// Pairs closer than this in the image share their errors.
 constexpr int kPatchPx = 16;
@@ -45,10 +47,11 @@ PoseEstimator::PoseEstimator(const MapView& map, const RgbdCamera& camera, const
   options_.refinement.depth_noise = camera.depth_noise;
 }
 
-PoseHypothesis PoseEstimator::from_matches(const FrameObservations& frame, std::span<const Match> matches, std::uint64_t seed) {
+PoseHypothesis PoseEstimator::from_matches(const FrameObservations& frame, std::span<const Match> matches, std::uint64_t seed,
+                                           const Rigid3* T_map_explained) {
   PoseHypothesis hypothesis;
   hypothesis.num_matches = static_cast<std::uint32_t>(matches.size());
-  fill_pairs(frame, matches, static_cast<std::size_t>(options_.max_ransac_pairs));
+  fill_pairs(frame, matches, T_map_explained, static_cast<std::size_t>(options_.max_ransac_pairs));
   const PnpRansacResult found = ransac_.estimate(pairs_, focal_px_, seed);
   if (found.is_found) {
     const PoseRefinementResult refined = refine_pose(pairs_, found.T_map_camera, focal_px_, options_.refinement, &inlier_mask_);
@@ -70,7 +73,7 @@ PoseHypothesis PoseEstimator::look_again(const FrameObservations& frame, const P
   const auto matches = match_around(frame, hypothesis.T_map_camera, options_.guided_radius_px);
   again.num_matches = static_cast<std::uint32_t>(matches.size());
   again.num_visible = static_cast<std::uint32_t>(visible_.size());
-  fill_pairs(frame, matches, pairs_.capacity());
+  fill_pairs(frame, matches, nullptr, pairs_.capacity());
   if (pairs_.size() < kMinPairs) return again;
   const PoseRefinementResult refined = refine_pose(pairs_, hypothesis.T_map_camera, focal_px_, options_.refinement, &inlier_mask_);
   if (refined.is_converged) {
@@ -82,9 +85,11 @@ PoseHypothesis PoseEstimator::look_again(const FrameObservations& frame, const P
   return again;
 }
 
-void PoseEstimator::fill_pairs(const FrameObservations& frame, std::span<const Match> matches, std::size_t limit) {
+void PoseEstimator::fill_pairs(const FrameObservations& frame, std::span<const Match> matches, const Rigid3* T_map_explained,
+                               std::size_t limit) {
   pairs_.clear();
   for (const Match& match : matches) {
+    if (T_map_explained != nullptr && is_explained(frame, match, *T_map_explained)) continue;
     const auto i = static_cast<std::size_t>(match.feature);
     const Eigen::Vector3f p_map = map_->position_m(static_cast<std::uint32_t>(match.landmark));
     pairs_.add(frame.x(i), frame.y(i), p_map.x(), p_map.y(), p_map.z(), frame.depth_m(i), frame.sigma_px(i),
@@ -92,6 +97,15 @@ void PoseEstimator::fill_pairs(const FrameObservations& frame, std::span<const M
   }
   pairs_.sort_by_rank();
   pairs_.truncate(limit);
+}
+
+bool PoseEstimator::is_explained(const FrameObservations& frame, const Match& match, const Rigid3& T_map_camera) const {
+  const Eigen::Vector3d p_map = map_->position_m(static_cast<std::uint32_t>(match.landmark)).cast<double>();
+  const Eigen::Vector3d p_camera = T_map_camera.rotation.conjugate() * (p_map - T_map_camera.translation);
+  if (p_camera.z() <= 0) return false;
+  const auto i = static_cast<std::size_t>(match.feature);
+  const double error = std::hypot(p_camera.x() / p_camera.z() - frame.x(i), p_camera.y() / p_camera.z() - frame.y(i));
+  return error * focal_px_ <= kExplainedReach * options_.refinement.max_error_px;
 }
 
 void PoseEstimator::summarize(const FrameObservations& frame, const PoseRefinementResult& refined, PoseHypothesis* hypothesis) {

@@ -59,14 +59,17 @@ class PoseEstimator {
                 StageTimer* timer);
 
   /// Pose from matches with outliers, not yet looked at a second time. `seed` makes the sampling reproducible.
-  [[nodiscard]] PoseHypothesis from_matches(const FrameObservations& frame, std::span<const Match> matches, std::uint64_t seed);
+  /// Matches that fit `T_map_explained`, where given, are left out: what other pose do the remaining ones ask for?
+  [[nodiscard]] PoseHypothesis from_matches(const FrameObservations& frame, std::span<const Match> matches, std::uint64_t seed,
+                                            const Rigid3* T_map_explained = nullptr);
   /// Matches in windows around a predicted pose; valid until the next call.
   std::span<const Match> match_around(const FrameObservations& frame, const Rigid3& T_map_camera, float radius_px);
   /// Looks at the map again around a found pose, refines on all that fits, and gathers the figures for verification.
   [[nodiscard]] PoseHypothesis look_again(const FrameObservations& frame, const PoseHypothesis& hypothesis);
 
  private:
-  void fill_pairs(const FrameObservations& frame, std::span<const Match> matches, std::size_t limit);
+  void fill_pairs(const FrameObservations& frame, std::span<const Match> matches, const Rigid3* T_map_explained, std::size_t limit);
+  [[nodiscard]] bool is_explained(const FrameObservations& frame, const Match& match, const Rigid3& T_map_camera) const;
   void summarize(const FrameObservations& frame, const PoseRefinementResult& refined, PoseHypothesis* hypothesis);
   [[nodiscard]] double inliers_per_patch(const FrameObservations& frame);
   void measure_focal_scale(PoseHypothesis* hypothesis);
