@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
+#include "core/map/mapping_guard.h"
 #include "drivers/frame_source.h"
 #include "drivers/sequence.h"
 #include "drivers/source_url.h"
@@ -17,6 +18,7 @@
 #include "tools/camloc/commands.h"
 #include "tools/camloc/sequence_run.h"
 #include "tools/camloc/trajectory_error.h"
+#include "tools/common/command_line.h"
 
 namespace {
 
@@ -167,6 +169,7 @@ camloc::Status bench(const BenchArguments& arguments) {
       if (arguments.has_reference) record(reference.process(frame), frame.stamp_ns, &contestants[1]);
     });
     if (!counts) return counts.status();
+    if (pass == 0) camloc::tools::warn_of_corrupt_frames("camloc bench", *counts);
     num_frames += counts->num_frames;
     if (pass == 0) truth = recorded_poses(arguments, run->camera);
   }
@@ -183,6 +186,7 @@ camloc::Status bench(const BenchArguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  camloc::install_mapping_guard();
   cv::setNumThreads(1);
   BenchArguments arguments;
   CLI::App app("Time and accuracy of localization, stage by stage", "camloc bench");
@@ -195,7 +199,11 @@ int main(int argc, char** argv) {
   app.add_option("--repeat", arguments.repeat, "Passes over the sequence")->check(CLI::Range(1, 1000))->capture_default_str();
   app.add_flag("--reference-opencv", arguments.has_reference, "Also run cv::ORB + cv::BFMatcher + cv::solvePnPRansac on the same frames");
   app.add_flag("--json", arguments.is_json, "Print JSON");
-  CLI11_PARSE(app, argc, argv);
+  app.footer("Example: camloc bench --map kitchen.cmap --sequence recordings/kitchen --camera 7scenes.toml --frames 300:600:5 \\\n"
+             "             --mode single --reference-opencv\n"
+             "Exit code: 0 done, 1 failed, 2 wrong usage or configuration.");
+  bool is_over = false;
+  if (const int usage = camloc::tools::parse_command_line(app, argc, argv, &is_over); is_over) return usage;
   arguments.run.is_single = arguments.mode == "single";
   return camloc::tools::report(bench(arguments));
 }

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/camloc-map/build_report.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
@@ -12,8 +10,6 @@
 
 namespace camloc::map_tool {
 namespace {
-
-constexpr int kBarWidth = 24;
 
 double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
@@ -77,36 +73,6 @@ std::string format_json(const BuildSummary& s) {
       {"pairs", b.num_consistency_pairs}, {"sigma_m", s.pose_sigma_m}, {"sigma_deg", degrees(s.pose_sigma_rad)}};
   json["seconds"] = s.seconds;
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-}
-
-ProgressLine::ProgressLine(std::uint64_t num_frames)
-    : is_terminal_(isatty(STDERR_FILENO) == 1),
-      num_frames_(std::max<std::uint64_t>(num_frames, 1)),
-      start_(std::chrono::steady_clock::now()) {}
-
-ProgressLine::~ProgressLine() {
-  if (is_terminal_) std::fputs("\r\033[K", stderr);
-}
-
-void ProgressLine::show(std::uint64_t frame, const MapBuildReport& report) {
-  const auto now = std::chrono::steady_clock::now();
-  if (!is_terminal_ || (frame < num_frames_ && now - last_shown_ < std::chrono::milliseconds(100))) return;
-  last_shown_ = now;
-  const double done = static_cast<double>(frame) / static_cast<double>(num_frames_);
-  const double elapsed_s = std::chrono::duration<double>(now - start_).count();
-  const double left_s = done > 0 ? elapsed_s * (1 - done) / done : 0;
-  const int filled = std::clamp(static_cast<int>(done * kBarWidth), 0, kBarWidth);
-  std::fprintf(stderr, "\r\033[K[%s%s] frame %llu/%llu  %u landmarks  %.0f s left",
-               std::string(static_cast<std::size_t>(filled), '#').c_str(),
-               std::string(static_cast<std::size_t>(kBarWidth - filled), '.').c_str(), count(frame), count(num_frames_),
-               report.num_landmarks_before, left_s);
-  std::fflush(stderr);
-}
-
-void ProgressLine::say(const std::string& text) {
-  if (!is_terminal_) return;
-  std::fprintf(stderr, "\r\033[K%s", text.c_str());
-  std::fflush(stderr);
 }
 
 }  // namespace camloc::map_tool

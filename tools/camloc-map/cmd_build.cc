@@ -3,7 +3,6 @@
 //
 // camloc-map build: a recorded RGB-D sequence with poses becomes a map file.
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -15,9 +14,16 @@
 #include "tools/camloc-map/build_report.h"
 #include "tools/camloc-map/commands.h"
 #include "tools/camloc-map/posed_frames.h"
+#include "tools/common/command_line.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/output_path.h"
+#include "tools/common/progress_line.h"
 
 namespace camloc::map_tool {
 namespace {
+
+using tools::InterruptGuard;
+using tools::ProgressLine;
 
 constexpr const char* kFooter =
     "Example: a map from every frame but each 50th\n"
@@ -32,46 +38,9 @@ struct BuildArguments {
   bool is_json = false;
 };
 
-volatile std::sig_atomic_t interrupted = 0;
-
-void on_interrupt(int) { interrupted = 1; }
-
-/// Ctrl-C and SIGTERM set a flag while this lives.
-class InterruptGuard {
- public:
-  InterruptGuard() {
-    struct sigaction action = {};
-    action.sa_handler = on_interrupt;
-    action.sa_flags = static_cast<int>(SA_RESETHAND);  // a second Ctrl-C ends the program at once
-    sigaction(SIGINT, &action, &old_interrupt_);
-    sigaction(SIGTERM, &action, &old_terminate_);
-  }
-  ~InterruptGuard() {
-    sigaction(SIGINT, &old_interrupt_, nullptr);
-    sigaction(SIGTERM, &old_terminate_, nullptr);
-  }
-  InterruptGuard(const InterruptGuard&) = delete;
-  InterruptGuard& operator=(const InterruptGuard&) = delete;
-  [[nodiscard]] static bool is_interrupted() { return interrupted != 0; }
-
- private:
-  struct sigaction old_interrupt_ = {}, old_terminate_ = {};
-};
-
 Status interrupted_status(const std::string& map_path) {
   const bool is_there = std::filesystem::exists(map_path);
   return {ErrorCode::kIo, "interrupted; " + map_path + (is_there ? " is unchanged" : " was not written")};
-}
-
-Status check_output(const std::string& map_path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(map_path, ignored))
-    return {ErrorCode::kInvalid, "--out " + map_path + ": is a folder; give a file name"};
-  const auto folder = std::filesystem::path(map_path).parent_path();
-  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored)) {
-    return {ErrorCode::kInvalid, "--out " + map_path + ": folder " + folder.string() + " does not exist"};
-  }
-  return Status::ok();
 }
 
 /// Feeds every posed frame to the builder. Broken frames are counted, a wrong image size ends the build.
@@ -83,9 +52,9 @@ Status add_frames(const PosedFrames& frames, MapBuilder* builder, BuildSummary* 
     const Status status = source.value()->next(&buffer, std::chrono::milliseconds(1000));
     if (status.code() == ErrorCode::kEnd) return Status::ok();
     if (status.code() == ErrorCode::kTimeout) continue;
-    progress->show(++done, builder->progress());
+    progress->show(++done, std::to_string(builder->progress().num_landmarks_before) + " landmarks");
     if (status.code() == ErrorCode::kCorrupt) {
-      ++summary->num_broken;
+      if (summary->num_broken++ == 0) summary->first_broken = status.message();
       continue;
     }
     if (!status.is_ok()) return status;
@@ -109,6 +78,10 @@ Status build(const BuildArguments& arguments, const RgbdCamera& camera, const Po
   ProgressLine progress(frames.T_map_camera_of_frame.size());
   if (const Status added = add_frames(frames, &builder, summary, &progress); !added.is_ok()) return added;
   if (InterruptGuard::is_interrupted()) return interrupted_status(arguments.map_path);
+  if (const auto num_usable = frames.T_map_camera_of_frame.size() - summary->num_broken; num_usable == 0) {
+    return {ErrorCode::kCorrupt, "none of " + std::to_string(summary->num_broken) + " frames could be read, the first because of " +
+                                     summary->first_broken};
+  }
   progress.say("choosing landmarks and keyframes, training words ...");
   auto map = builder.finish(&summary->build);
   if (!map.is_ok()) return map.status();
@@ -124,7 +97,7 @@ Status build(const BuildArguments& arguments, const RgbdCamera& camera, const Po
 int run(BuildArguments arguments) {
   const auto camera = read_camera_file(arguments.camera_path);
   if (!camera.is_ok()) return report_error(camera.status(), 2);
-  if (const Status output = check_output(arguments.map_path); !output.is_ok()) return report_error(output, 2);
+  if (const Status output = tools::check_output_path("--out", arguments.map_path); !output.is_ok()) return report_error(output, 2);
   const auto frames = find_posed_frames(arguments.frames, camera.value());
   if (!frames.is_ok()) return report_error(frames.status(), frames.status().code() == ErrorCode::kInvalid ? 2 : 1);
   if (arguments.name.empty()) {
@@ -139,6 +112,10 @@ int run(BuildArguments arguments) {
   summary.num_without_pose = frames.value().num_without_pose;
   if (const Status built = build(arguments, camera.value(), frames.value(), &summary); !built.is_ok()) {
     return report_error(built, built.code() == ErrorCode::kInvalid ? 2 : 1);
+  }
+  if (summary.num_broken > 0) {
+    tools::print_error("camloc-map", std::to_string(summary.num_broken) + " of " + std::to_string(frames.value().T_map_camera_of_frame.size()) +
+                                         " frames left out because they could not be read, the first: " + summary.first_broken);
   }
   const std::string text = arguments.is_json ? format_json(summary) : format_table(summary);
   return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0 ? 0 : 1;

@@ -2,46 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // camloc-sim: writes a synthetic building to try camloc on. Exit 0 done, 1 failed, 2 usage.
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <map>
+#include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "tools/camloc-sim/dataset.h"
+#include "tools/common/command_line.h"
+#include "tools/common/progress_line.h"
 
 namespace {
 
 using camloc::sim::SceneKind;
-
-/// One line that is rewritten in place, at most a hundred times a part.
-class ProgressBar {
- public:
-  void operator()(const std::string& part, int done, int all) {
-    const int percent = all > 0 ? 100 * done / all : 100;
-    if (percent == last_percent_ && part == last_part_) return;
-    if (part != last_part_ && !last_part_.empty()) std::fputc('\n', stderr);
-    last_percent_ = percent;
-    last_part_ = part;
-    std::string bar(30, '.');
-    for (int i = 0; i < 30 * percent / 100; ++i) bar[static_cast<std::size_t>(i)] = '#';
-    std::fprintf(stderr, "\r%-8s [%s] %3d %%  %d/%d", part.c_str(), bar.c_str(), percent, done, all);
-    std::fflush(stderr);
-  }
-  ~ProgressBar() {
-    if (!last_part_.empty()) std::fputc('\n', stderr);
-  }
-  ProgressBar() = default;
-  ProgressBar(const ProgressBar&) = delete;
-  ProgressBar& operator=(const ProgressBar&) = delete;
-
- private:
-  std::string last_part_;
-  int last_percent_ = -1;
-};
 
 void add_options(CLI::App* app, std::string* out, camloc::sim::DatasetOptions* options, std::string* only) {
   app->add_option("--out", *out, "Folder to write to; created, must be empty unless --force")->required();
@@ -82,9 +58,8 @@ int main(int argc, char** argv) {
   options.recording.rate_hz = 0;
   options.recording.num_jobs = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 256U));
   add_options(&app, &out, &options, &only);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) { return app.exit(error) == 0 ? 0 : 2; }
+  bool is_over = false;
+  if (const int usage = camloc::tools::parse_command_line(app, argc, argv, &is_over); is_over) return usage;
   if (options.recording.rate_hz == 0) options.recording.rate_hz = options.kind == SceneKind::kSmall ? 10 : 30;
   if (!only.empty()) {
     options.has_mapping = only == "mapping";
@@ -92,13 +67,15 @@ int main(int argc, char** argv) {
     options.has_lidar = only == "lidar";
   }
   camloc::Result<camloc::sim::DatasetSummary> summary = [&] {
-    ProgressBar bar;
-    camloc::sim::DatasetProgress progress;
-    if (isatty(STDERR_FILENO) != 0) progress = [&](const std::string& part, int done, int all) { bar(part, done, all); };
-    return camloc::sim::write_dataset(out, options, progress);
+    std::string shown_part;
+    std::optional<camloc::tools::ProgressLine> line;
+    return camloc::sim::write_dataset(out, options, [&](const std::string& part, int done, int all) {
+      if (part != std::exchange(shown_part, part)) line.emplace(static_cast<std::uint64_t>(all), part);
+      line->show(static_cast<std::uint64_t>(done));
+    });
   }();
   if (!summary) {
-    std::fprintf(stderr, "camloc-sim: %s\n", summary.status().message().c_str());
+    camloc::tools::print_error("camloc-sim", summary.status().message());
     return summary.status().code() == camloc::ErrorCode::kInvalid ? 2 : 1;
   }
   std::printf("%s: mapping %d frames, day2 %d frames, %llu LiDAR points\n", out.c_str(), summary->num_mapping_frames,

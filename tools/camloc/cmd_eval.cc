@@ -15,6 +15,7 @@
 #include "tools/camloc/commands.h"
 #include "tools/camloc/top_view.h"
 #include "tools/camloc/trajectory_error.h"
+#include "tools/common/output_path.h"
 
 namespace camloc::tools {
 namespace {
@@ -133,6 +134,9 @@ Status draw(const EvalArguments& arguments, const EstimatedTrajectory& estimate,
 }
 
 Status eval(const EvalArguments& arguments) {
+  if (!arguments.png_path.empty()) {
+    if (Status status = check_output_path("--png", arguments.png_path); !status) return status;
+  }
   auto estimate = read_trajectory(arguments.estimate_path);
   if (!estimate) return estimate.status();
   auto reference = read_reference(arguments, *estimate);
@@ -163,7 +167,8 @@ void add_eval_command(CLI::App& app, int& exit_code) {
   command->add_option("--map", arguments->map_path, "Map to draw in the picture");
   command->add_option("--png", arguments->png_path, "Write a top view of map, reference and estimate");
   command->add_flag("--json", arguments->is_json, "Print JSON");
-  command->footer("Example: camloc eval --estimate traj.tum --reference recordings/kitchen --map kitchen.cmap --png result.png");
+  command->footer("Example: camloc eval --estimate traj.tum --reference recordings/kitchen --map kitchen.cmap --png result.png\n"
+                  "Exit code: 0 done (however large the errors are), 1 failed, 2 wrong usage or configuration.");
   command->callback([arguments, &exit_code] { exit_code = report(eval(*arguments)); });
 }
 

@@ -10,6 +10,9 @@
 #include "tools/camloc/commands.h"
 #include "tools/camloc/sequence_run.h"
 #include "tools/camloc/trajectory_file.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/output_path.h"
+#include "tools/common/progress_line.h"
 
 namespace camloc::tools {
 namespace {
@@ -84,43 +87,73 @@ void print_summary(const std::map<std::string, std::uint64_t>& states, const std
   }
 }
 
-Status localize(const LocalizeArguments& arguments) {
-  auto run = open_sequence_run(arguments.run);
-  if (!run) return run.status();
-
+/// What a run found out, frame by frame.
+struct RunLog {
   EstimatedTrajectory trajectory;
   Json records = Json::array();
   std::map<std::string, std::uint64_t> states, reasons;
-  const auto counts = for_each_frame(*run, [&](const Frame& frame) {
-    const Localization& result = run->localizer->process(frame);
+
+  void add(const Localization& result, bool has_records) {
     ++states[to_string(result.state)];
     if (result.state == State::kLocalized) {
       trajectory.poses.push_back({result.stamp_ns, result.T_map_camera, result.covariance});
     } else {
       ++reasons[to_string(result.reason)];
     }
-    if (!arguments.json_path.empty()) records.push_back(record_json(result));
-  });
-  if (!counts) return counts.status();
-
-  const CalibrationHealth& calibration = run->localizer->calibration();
-  trajectory.num_frames = counts->num_frames;
-  if (run->camera.poses_are_of_depth_camera) trajectory.T_color_depth = run->camera.T_color_depth;
-  if (calibration.is_suspect) trajectory.suspect_focal_scale = calibration.focal_scale;
-  if (Status status = write_text_file(arguments.out_path, format_trajectory(trajectory)); !status) return status;
-  if (!arguments.json_path.empty()) {
-    const Json document{{"map", arguments.run.map_path},
-                        {"sequence", arguments.run.sequence_url},
-                        {"mode", arguments.mode},
-                        {"summary",
-                         {{"frames", counts->num_frames},
-                          {"unreadable", counts->num_corrupt},
-                          {"states", states},
-                          {"calibration", {{"is_suspect", calibration.is_suspect}, {"focal_scale", calibration.focal_scale}, {"frames", calibration.num_frames}}}}},
-                        {"frames", records}};
-    if (Status status = write_text_file(arguments.json_path, document.dump(1) + "\n"); !status) return status;
+    if (has_records) records.push_back(record_json(result));
   }
-  print_summary(states, reasons, *counts, calibration);
+};
+
+Json document_json(const LocalizeArguments& arguments, const RunLog& log, const RunCounts& counts, const CalibrationHealth& calibration) {
+  const Json health{{"is_suspect", calibration.is_suspect}, {"focal_scale", calibration.focal_scale}, {"frames", calibration.num_frames}};
+  return {{"map", arguments.run.map_path},
+          {"sequence", arguments.run.sequence_url},
+          {"mode", arguments.mode},
+          {"summary",
+           {{"frames", counts.num_frames}, {"unreadable", counts.num_corrupt}, {"states", log.states}, {"calibration", health}}},
+          {"frames", log.records}};
+}
+
+/// Trajectory and records, whole files or none.
+Status write_results(const LocalizeArguments& arguments, const SequenceRun& run, const RunCounts& counts, RunLog* log) {
+  const CalibrationHealth& calibration = run.localizer->calibration();
+  log->trajectory.num_frames = counts.num_frames;
+  if (run.camera.poses_are_of_depth_camera) log->trajectory.T_color_depth = run.camera.T_color_depth;
+  if (calibration.is_suspect) log->trajectory.suspect_focal_scale = calibration.focal_scale;
+  if (Status status = write_text_file(arguments.out_path, format_trajectory(log->trajectory)); !status) return status;
+  if (arguments.json_path.empty()) return Status::ok();
+  const std::string text = document_json(arguments, *log, counts, calibration).dump(1, ' ', false, Json::error_handler_t::replace);
+  return write_text_file(arguments.json_path, text + "\n");
+}
+
+Status localize(const LocalizeArguments& arguments) {
+  if (Status status = check_output_path("--out", arguments.out_path); !status) return status;
+  if (!arguments.json_path.empty()) {
+    if (Status status = check_output_path("--json", arguments.json_path); !status) return status;
+  }
+  auto run = open_sequence_run(arguments.run);
+  if (!run) return run.status();
+
+  RunLog log;
+  const InterruptGuard guard;
+  const auto counts = [&] {
+    ProgressLine progress(run->source->info().num_frames.value_or(0));
+    std::uint64_t num_done = 0;
+    return for_each_frame(
+        *run,
+        [&](const Frame& frame) {
+          log.add(run->localizer->process(frame), !arguments.json_path.empty());
+          progress.show(++num_done, std::to_string(log.trajectory.poses.size()) + " localized");
+        },
+        InterruptGuard::is_interrupted);
+  }();
+  if (!counts) return counts.status();
+  if (Status status = write_results(arguments, *run, *counts, &log); !status) return status;
+  if (InterruptGuard::is_interrupted()) {
+    return {ErrorCode::kIo, "interrupted after " + std::to_string(counts->num_frames) + " frames; " + arguments.out_path + " holds those"};
+  }
+  warn_of_corrupt_frames("camloc", *counts);
+  print_summary(log.states, log.reasons, *counts, run->localizer->calibration());
   return Status::ok();
 }
 
@@ -133,14 +166,20 @@ void add_localize_command(CLI::App& app, int& exit_code) {
   command->add_option("--sequence", arguments->run.sequence_url, "Folder or URL of the recording")->required();
   command->add_option("--camera", arguments->run.camera_path, "Camera file (TOML, or YAML of kalibr, ROS, OpenCV)")->required();
   command->add_option("--out", arguments->out_path, "Trajectory to write: TUM format, LOCALIZED frames, T_map_camera")->required();
-  command->add_option("--frames", arguments->run.frames, "Frames to use: start:stop:step[,...], as Python slices");
+  command->add_option("--frames", arguments->run.frames, "Frames to use: start:stop:step[,...], as Python slices (default: all)");
   command->add_option("--exclude", arguments->run.exclude, "Frames to leave out, same form");
   command->add_option("--mode", arguments->mode, "track: frames follow each other; single: every frame on its own")
       ->check(CLI::IsMember({"track", "single"}))->capture_default_str();
-  command->add_option("--perturb", arguments->run.perturbations, "gamma=, contrast=, exposure=, noise=, blur=; may be repeated");
+  command->add_option("--perturb", arguments->run.perturbations, "Change every image first; may be repeated. gamma=0.5, contrast=0.6, exposure=0.4 (factors), noise=12 (sigma, grey "
+                      "levels), blur=9 (pixels)")
+      ->allow_extra_args(false);
   command->add_option("--json", arguments->json_path, "Also write one record per frame to this file");
   command->add_flag("!--no-depth", arguments->run.use_depth, "Ignore measured depth");
-  command->footer("Example: camloc localize --map kitchen.cmap --sequence recordings/kitchen --camera 7scenes.toml --frames ::50 --mode single --out traj.tum");
+  command->footer("Example: every 50th frame, each as if the camera had just been switched on\n"
+                  "  camloc localize --map kitchen.cmap --sequence recordings/kitchen --camera 7scenes.toml --frames ::50 \\\n"
+                  "      --mode single --out traj.tum\n"
+                  "Ctrl-C stops after the current frame and writes what there is. Exit code: 0 done, 1 failed or interrupted,\n"
+                  "2 wrong usage or configuration.");
   command->callback([arguments, &exit_code] {
     arguments->run.is_single = arguments->mode == "single";
     exit_code = report(localize(*arguments));

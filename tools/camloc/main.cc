@@ -4,12 +4,13 @@
 // `camloc COMMAND`: the commands built in below, or the program camloc-COMMAND.
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <string>
 #include <vector>
 
+#include "core/map/mapping_guard.h"
 #include "tools/camloc/commands.h"
 #include "tools/camloc/program.h"
+#include "tools/common/command_line.h"
 
 namespace {
 
@@ -67,30 +68,24 @@ int run_external(const CLI::App& app, const std::vector<std::string>& arguments)
   } else if (const std::string closest = camloc::tools::closest_word(arguments[0], known); !closest.empty()) {
     hint = "did you mean '" + closest + "'?";
   }
-  std::fprintf(stderr, "camloc: no command '%s' and no program camloc-%s; %s\n", arguments[0].c_str(), arguments[0].c_str(),
-               hint.c_str());
+  camloc::tools::print_error("camloc", "no command '" + arguments[0] + "' and no program camloc-" + arguments[0] + "; " + hint);
   return 2;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  camloc::install_mapping_guard();
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   int exit_code = 0;
   CLI::App app("Where is this camera in the building? Tools around camlocd and its maps.", "camloc");
   app.set_version_flag("--version", "camloc " CAMLOC_VERSION);
   app.require_subcommand(1);
-  app.footer(kProgramsHelp);
   for (const auto& command : kCommands) command.add(app, exit_code);
+  app.footer(kProgramsHelp);  // after the sub-commands, which would inherit it
   if (is_external(app, arguments)) return run_external(app, arguments);
 
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    std::fprintf(stderr, "camloc: %s; see 'camloc%s --help'\n", error.what(),
-                 arguments.empty() || !is_built_in(app, arguments[0]) ? "" : (" " + arguments[0]).c_str());
-    return 2;
-  }
-  return exit_code;
+  bool is_over = false;
+  const int usage = camloc::tools::parse_command_line(app, argc, argv, &is_over);
+  return is_over ? usage : exit_code;
 }

@@ -6,6 +6,7 @@
 
 #include "drivers/camera_file.h"
 #include "drivers/frame_selection.h"
+#include "tools/common/command_line.h"
 
 namespace camloc::tools {
 namespace {
@@ -22,6 +23,11 @@ Status check_sizes(const FrameSourceInfo& info, const RgbdCamera& camera, const 
                                      size(info.depth_width, info.depth_height) + ": use the camera file of the camera that recorded it"};
   }
   return Status::ok();
+}
+
+/// The text becomes part of a URL, so anything but slices must end here.
+Status check_selection(const std::string& option, const std::string& text) {
+  return text.empty() ? Status::ok() : select_frames(text, "", 1).status().with_context(option);
 }
 
 }  // namespace
@@ -48,6 +54,8 @@ Result<SequenceRun> open_sequence_run(const SequenceRunOptions& options) {
     if (!perturbation) return perturbation.status();
     run.perturbations.push_back(*perturbation);
   }
+  if (Status status = check_selection("--frames", options.frames); !status) return status;
+  if (Status status = check_selection("--exclude", options.exclude); !status) return status;
   auto camera = read_camera_file(options.camera_path);
   if (!camera) return camera.status();
   run.camera = std::move(camera).value();
@@ -67,16 +75,17 @@ Result<SequenceRun> open_sequence_run(const SequenceRunOptions& options) {
   return run;
 }
 
-Result<RunCounts> for_each_frame(SequenceRun& run, const std::function<void(const Frame&)>& on_frame) {
+Result<RunCounts> for_each_frame(SequenceRun& run, const std::function<void(const Frame&)>& on_frame,
+                                 const std::function<bool()>& should_stop) {
   RunCounts counts;
   FrameBuffer buffer;
-  while (true) {
+  while (!should_stop || !should_stop()) {
     const Status status = run.source->next(&buffer, std::chrono::milliseconds(1000));
-    if (status.code() == ErrorCode::kEnd) return counts;
+    if (status.code() == ErrorCode::kEnd) break;
     if (status.code() == ErrorCode::kTimeout) continue;
     if (status.code() == ErrorCode::kCorrupt) {
       ++counts.num_frames;
-      ++counts.num_corrupt;
+      if (counts.num_corrupt++ == 0) counts.first_corrupt = status.message();
       continue;
     }
     if (!status) return status;
@@ -84,6 +93,15 @@ Result<RunCounts> for_each_frame(SequenceRun& run, const std::function<void(cons
     apply(run.perturbations, buffer.sequence, &buffer.gray);
     on_frame(buffer.view());
   }
+  if (counts.num_corrupt == 0 || counts.num_corrupt < counts.num_frames) return counts;
+  return {ErrorCode::kCorrupt, "none of " + std::to_string(counts.num_frames) + " frames could be read, the first because of " +
+                                   counts.first_corrupt + "; record or copy the sequence again"};
+}
+
+void warn_of_corrupt_frames(const std::string& program, const RunCounts& counts) {
+  if (counts.num_corrupt == 0) return;
+  print_error(program, std::to_string(counts.num_corrupt) + " of " + std::to_string(counts.num_frames) +
+                           " frames could not be read and count as not localized, the first: " + counts.first_corrupt);
 }
 
 }  // namespace camloc::tools

@@ -45,9 +45,14 @@ struct SequenceRun {
 struct RunCounts {
   std::uint64_t num_frames = 0;
   std::uint64_t num_corrupt = 0;      ///< frames that could not be decoded
+  std::string first_corrupt;          ///< what was wrong with the first of them
 };
-/// Calls `on_frame` with every decoded and perturbed frame until the source ends.
-[[nodiscard]] Result<RunCounts> for_each_frame(SequenceRun& run, const std::function<void(const Frame&)>& on_frame);
+/// Calls `on_frame` with every decoded and perturbed frame until the source ends or `should_stop` says so, which is asked
+/// before each frame. kCorrupt where not a single frame could be decoded.
+[[nodiscard]] Result<RunCounts> for_each_frame(SequenceRun& run, const std::function<void(const Frame&)>& on_frame,
+                                               const std::function<bool()>& should_stop = nullptr);
+/// "3 of 60 frames could not be read ..." on stderr, in the name of `program`; nothing where there were none.
+void warn_of_corrupt_frames(const std::string& program, const RunCounts& counts);
 
 /// The source URL with a frame selection added.
 [[nodiscard]] std::string with_selection(const std::string& url, const std::string& frames, const std::string& exclude);

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/camloc/trajectory_file.h"
 
-#include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <fstream>
+#include <span>
 #include <sstream>
 
+#include "core/map/replace_file.h"
 #include "drivers/sequence.h"
 
 namespace camloc::tools {
@@ -122,15 +122,7 @@ Result<EstimatedTrajectory> read_trajectory(const std::string& path) {
 }
 
 Status write_text_file(const std::string& path, const std::string& text) {
-  const std::string temporary = path + ".tmp";
-  std::FILE* file = std::fopen(temporary.c_str(), "wb");
-  if (file == nullptr) return {ErrorCode::kIo, path + ": cannot write: " + std::strerror(errno)};
-  const bool is_written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  const bool is_closed = std::fclose(file) == 0;
-  if (is_written && is_closed && std::rename(temporary.c_str(), path.c_str()) == 0) return Status::ok();
-  const std::string why = std::strerror(errno);
-  std::remove(temporary.c_str());
-  return {ErrorCode::kIo, path + ": cannot write: " + why};
+  return replace_file(path, std::as_bytes(std::span(text)));
 }
 
 }  // namespace camloc::tools

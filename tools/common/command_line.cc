@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/common/command_line.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+
+namespace camloc::tools {
+namespace {
+
+/// "camloc map info": the program and the sub-commands that were recognised.
+std::string chosen_command(const CLI::App& app) {
+  std::string name = app.get_name();
+  for (const CLI::App* command = &app; !command->get_subcommands().empty();) {
+    command = command->get_subcommands().front();
+    name += " " + command->get_name();
+  }
+  return name;
+}
+
+}  // namespace
+
+int parse_command_line(CLI::App& app, int argc, const char* const* argv, bool* is_over) {
+  *is_over = true;
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    print_error(app.get_name(), std::string(error.what()) + "; see '" + chosen_command(app) + " --help'");
+    return 2;
+  } catch (const std::exception& error) {  // out of memory, mostly
+    print_error(app.get_name(), error.what());
+    return 1;
+  }
+  *is_over = false;
+  return 0;
+}
+
+void print_error(const std::string& program, const std::string& message) {
+  std::string line = message;
+  std::replace_if(line.begin(), line.end(), [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }, '?');
+  std::fprintf(stderr, "%s: %s\n", program.c_str(), line.c_str());
+}
+
+}  // namespace camloc::tools

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// How every program reads its arguments and says that something went wrong: one line on stderr and an exit code,
+// 0 done, 1 failed, 2 usage or configuration.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace camloc::tools {
+
+/// Parses and runs the callbacks. Returns 0 when the arguments were right, and the exit code otherwise; sets `is_over` when
+/// the program has nothing left to do (an error, --help, --version). The hint of an error names the sub-command's help.
+[[nodiscard]] int parse_command_line(CLI::App& app, int argc, const char* const* argv, bool* is_over);
+
+/// "program: message" on stderr. Line ends and other control characters, which a file name may hold, become '?'.
+void print_error(const std::string& program, const std::string& message);
+
+}  // namespace camloc::tools
