@@ -11,18 +11,17 @@
 #include <cmath>
 
 #include "core/geometry/pose_jacobian.h"
+#include "core/geometry/refinement_equations.h"
 
 namespace camloc {
 namespace {
 
-constexpr double kMinDepth_m = 0.05;          // landmarks nearer or behind the camera take no part
 constexpr double kCauchyReach = 5.0;          // the Cauchy pass sees pairs within this many times max_error_px
 constexpr double kCauchyReachFocal = 20.0;    // a wrong focal length moves the border of the image by tens of pixels
 constexpr double kCauchyDepthReach = 20.0;    // sigmas; beyond, a depth adds a constant
 constexpr double kMinFocalScale = 0.3, kMaxFocalScale = 3.0;
+constexpr double kSettled = 1e-7;             // share of the cost below which a step ends a pass
 constexpr std::size_t kMinInliers = 4;
-
-enum class Kernel { kCauchy, kTruncated };
 
 struct State {
   Rigid3 T_map_camera;
@@ -54,7 +53,7 @@ class Problem {
     Residual r;
     const Eigen::Vector3d p_map(pairs_.X[i], pairs_.Y[i], pairs_.Z[i]);
     const Eigen::Vector3d p = R_camera_map * (p_map - state.T_map_camera.translation);
-    r.is_in_front = p.z() > kMinDepth_m;
+    r.is_in_front = p.z() > kMinRefinementDepth_m;
     if (!r.is_in_front) return r;
     r.z = p.z();
     r.u = p.x() / p.z();
@@ -81,86 +80,19 @@ class Problem {
   PoseRefinementOptions options_;
 };
 
-/// Cost and weight of one residual given its squared size in sigmas; both kernels are constant beyond their reach, so
-/// that pairs may leave and enter without the cost jumping.
-struct Loss {
-  double cost = 0, weight = 0;
-};
-
-Loss loss_of(Kernel kernel, double squared, double squared_reach, double cauchy_scale) {
-  const bool is_within = squared <= squared_reach;
-  const double limited = is_within ? squared : squared_reach;
-  if (kernel == Kernel::kTruncated) return {limited, is_within ? 1.0 : 0.0};
-  const double c2 = cauchy_scale * cauchy_scale;
-  return {c2 * std::log1p(limited / c2), is_within ? 1.0 / (1.0 + limited / c2) : 0.0};
-}
-
-/// Sum of the losses with its gradient and Gauss-Newton matrix; N = 6 pose in camera axes, 7th the focal scale.
 template <int N>
-struct NormalEquations {
-  using Vector = Eigen::Matrix<double, N, 1>;
-  using Matrix = Eigen::Matrix<double, N, N>;
-  double cost = 0;
-  Vector gradient = Vector::Zero();
-  Matrix hessian = Matrix::Zero();
-
-  void add(const Vector& row, double residual, double weight) {
-    const Vector weighted = weight * row;
-    gradient.noalias() += residual * weighted;
-    hessian.noalias() += weighted * row.transpose();
-  }
-};
-
-template <int N>
-void add_pair(const Problem& problem, const Residual& r, const State& state, double pixel_weight, double depth_weight,
-              NormalEquations<N>* equations) {
-  using Vector = typename NormalEquations<N>::Vector;
-  const PointJacobian J = point_jacobian(r.u, r.v, r.z);
-  const double scale = problem.focal_px() * state.focal_scale;
-  Vector row_u = Vector::Zero(), row_v = Vector::Zero(), row_z = Vector::Zero();
-  row_u.template head<6>() = scale * J.u;
-  row_v.template head<6>() = scale * J.v;
-  row_z.template head<6>() = J.z;
-  if constexpr (N == 7) {
-    row_u[6] = problem.focal_px() * r.u;
-    row_v[6] = problem.focal_px() * r.v;
-  }
-  if (pixel_weight > 0.0) {
-    const double weight = pixel_weight / (r.sigma_px * r.sigma_px);
-    equations->add(row_u, r.du_px, weight);
-    equations->add(row_v, r.dv_px, weight);
-  }
-  if (depth_weight > 0.0) {
-    equations->add(row_z, r.depth_sigmas * r.depth_sigma_m, depth_weight / (r.depth_sigma_m * r.depth_sigma_m));
-  }
-}
-
-template <int N>
-NormalEquations<N> evaluate(const Problem& problem, const State& state, Kernel kernel) {
-  NormalEquations<N> equations;
+RefinementModel model_of(const Problem& problem, RobustKernel kernel) {
   const PoseRefinementOptions& options = problem.options();
-  const Eigen::Matrix3d R_camera_map = state.T_map_camera.rotation.conjugate().toRotationMatrix();
   const double cauchy_reach = N == 7 ? kCauchyReachFocal : kCauchyReach;
-  const double reach_px = kernel == Kernel::kCauchy ? cauchy_reach * options.max_error_px : options.max_error_px;
-  const double depth_reach = kernel == Kernel::kCauchy ? kCauchyDepthReach : options.max_depth_error_sigmas;
-  const double squared_depth_reach = depth_reach * depth_reach;
-  for (std::size_t i = 0; i < problem.pairs().size(); ++i) {
-    const Residual r = problem.residual(i, R_camera_map, state);
-    const double sigma_px = problem.sigma_px(i);
-    const double squared_reach = reach_px * reach_px / (sigma_px * sigma_px);
-    const double squared = r.is_in_front ? r.error_squared_px / (sigma_px * sigma_px) : 2.0 * squared_reach;
-    const Loss pixel = loss_of(kernel, squared, squared_reach, options.cauchy_scale);
-    equations.cost += pixel.cost;
-    Loss depth;
-    if (problem.has_depth(i)) {
-      // The depth of a pair whose pixel is out of reach says nothing about this pose.
-      const double squared_depth = pixel.weight > 0.0 ? r.depth_sigmas * r.depth_sigmas : 2.0 * squared_depth_reach;
-      depth = loss_of(kernel, squared_depth, squared_depth_reach, options.cauchy_scale);
-      equations.cost += depth.cost;
-    }
-    if (pixel.weight > 0.0) add_pair<N>(problem, r, state, pixel.weight, depth.weight, &equations);
-  }
-  return equations;
+  RefinementModel model;
+  model.focal_px = problem.focal_px();
+  model.depth_noise = options.depth_noise;
+  model.use_depth = options.use_depth;
+  model.kernel = kernel;
+  model.cauchy_scale = options.cauchy_scale;
+  model.reach_px = kernel == RobustKernel::kCauchy ? cauchy_reach * options.max_error_px : options.max_error_px;
+  model.reach_depth_sigmas = kernel == RobustKernel::kCauchy ? kCauchyDepthReach : options.max_depth_error_sigmas;
+  return model;
 }
 
 template <int N>
@@ -171,21 +103,28 @@ State moved(const State& state, const Eigen::Matrix<double, N, 1>& change) {
   return next;
 }
 
-/// Runs one pass from `state`; returns the equations at the state it ends in.
+/// Runs one pass from `state`; returns the equations at the state it ends in, or one step of no account before it.
 template <int N>
-NormalEquations<N> minimize(const Problem& problem, Kernel kernel, State* state) {
-  NormalEquations<N> here = evaluate<N>(problem, *state, kernel);
+NormalEquations<N> minimize(const Problem& problem, RobustKernel kernel, State* state) {
+  const RefinementModel model = model_of<N>(problem, kernel);
+  const auto evaluate = [&](const State& at) { return normal_equations<N>(problem.pairs(), model, at.T_map_camera, at.focal_scale); };
+  NormalEquations<N> here = evaluate(*state);
   double damping = 1e-4;
   for (int iteration = 0; iteration < problem.options().max_iterations; ++iteration) {
-    typename NormalEquations<N>::Matrix damped = here.hessian;
+    Eigen::Matrix<double, N, N> damped = here.hessian;
     damped.diagonal() *= 1.0 + damping;
     damped.diagonal().array() += 1e-9;
     const Eigen::Matrix<double, N, 1> change = -damped.ldlt().solve(here.gradient);
     if (!change.allFinite() || change.template lpNorm<Eigen::Infinity>() < 1e-8) break;
     const State candidate = moved<N>(*state, change);
-    const NormalEquations<N> there = evaluate<N>(problem, candidate, kernel);
+    // What the step promises, in sigmas^2. It is far below the uncertainty of the pose: not worth another evaluation.
+    if (-here.gradient.dot(change) < kSettled * here.cost) {
+      *state = candidate;
+      break;
+    }
+    const NormalEquations<N> there = evaluate(candidate);
     if (there.cost <= here.cost) {
-      const bool is_settled = here.cost - there.cost < 1e-7 * here.cost;
+      const bool is_settled = here.cost - there.cost < kSettled * here.cost;
       *state = candidate;
       here = there;
       damping = std::max(0.1 * damping, 1e-9);
@@ -239,20 +178,20 @@ double collect_statistics(const Problem& problem, const State& state, PoseRefine
 template <int N>
 PoseRefinementResult refine(const Problem& problem, const Rigid3& T_map_camera_start, std::vector<std::uint8_t>* inlier_mask) {
   State state{T_map_camera_start, 1.0};
-  minimize<N>(problem, Kernel::kCauchy, &state);
-  const NormalEquations<N> final_equations = minimize<N>(problem, Kernel::kTruncated, &state);
+  minimize<N>(problem, RobustKernel::kCauchy, &state);
+  const NormalEquations<N> final_equations = minimize<N>(problem, RobustKernel::kTruncated, &state);
 
   PoseRefinementResult result;
   const double sum_squares = collect_statistics(problem, state, &result, inlier_mask);
   result.T_map_camera = state.T_map_camera;
   result.focal_scale = state.focal_scale;
-  const Eigen::LLT<typename NormalEquations<N>::Matrix> llt(final_equations.hessian);
+  const Eigen::LLT<Eigen::Matrix<double, N, N>> llt(final_equations.hessian);
   const int num_residuals = 2 * result.num_inliers + (problem.options().use_depth ? result.num_depth_inliers : 0);
   if (static_cast<std::size_t>(result.num_inliers) < kMinInliers || num_residuals <= N || llt.info() != Eigen::Success) return result;
 
   // Residuals larger than the noise model says widen the covariance; smaller ones never shrink it.
   const double reduced_chi_squared = sum_squares / (num_residuals - N);
-  typename NormalEquations<N>::Matrix covariance = NormalEquations<N>::Matrix::Identity();
+  Eigen::Matrix<double, N, N> covariance = Eigen::Matrix<double, N, N>::Identity();
   llt.solveInPlace(covariance);
   covariance *= std::max(1.0, reduced_chi_squared);
   if (!covariance.allFinite() || !(covariance.diagonal().minCoeff() > 0.0)) return result;
