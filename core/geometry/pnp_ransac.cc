@@ -12,6 +12,7 @@
 
 #include "core/geometry/p3p.h"
 #include "core/geometry/pose_jacobian.h"
+#include "core/geometry/reprojection_sums.h"
 
 namespace camloc {
 namespace {
@@ -83,9 +84,10 @@ Eigen::Vector3d ray(const PoseScorer& pairs, std::size_t i) {
 /// False where depth proves that not all three pairs are right.
 bool is_consistent_with_depth(const PoseScorer& pairs, const Sample& sample, float max_relative_depth_error) {
   const auto [i, j, k] = sample;
-  if (!pairs.has_depth(i) || !pairs.has_depth(j) || !pairs.has_depth(k)) return true;
-  return pairs.is_distance_consistent(i, j, max_relative_depth_error) &&
-         pairs.is_distance_consistent(j, k, max_relative_depth_error) &&
+  if (!(pairs.has_depth(i) & pairs.has_depth(j) & pairs.has_depth(k))) return true;
+  // All three at once: which one fails cannot be predicted.
+  return pairs.is_distance_consistent(i, j, max_relative_depth_error) &
+         pairs.is_distance_consistent(j, k, max_relative_depth_error) &
          pairs.is_distance_consistent(k, i, max_relative_depth_error);
 }
 
@@ -114,23 +116,20 @@ bool gauss_newton_step(const PoseScorer& pairs, std::size_t max_inliers, Rigid3*
   const Rigid3 T_camera_map = T_map_camera->inverse();
   const Eigen::Matrix3d R = T_camera_map.rotation.toRotationMatrix();
   const ScoredPose pose = scored_pose(R, T_camera_map.translation);
-  Matrix6d hessian = Matrix6d::Zero();
-  Vector6d gradient = Vector6d::Zero();
+  ReprojectionSums<double> sums;
   std::size_t num_inliers = 0;
   for (std::size_t i = 0; i < pairs.size() && num_inliers < max_inliers; ++i) {
     if (!pairs.pair_cost(pose, i).is_inlier) continue;
     ++num_inliers;
     const Eigen::Vector3d p = R * pairs.landmark(i) + T_camera_map.translation;
-    const double u = p.x() / p.z(), v = p.y() / p.z();
-    const PointJacobian J = point_jacobian(u, v, p.z());
+    const double inverse_z = 1.0 / p.z(), u = p.x() * inverse_z, v = p.y() * inverse_z;
     const Eigen::Vector2d measured = pairs.image_point(i);
-    gradient.noalias() += (u - measured.x()) * J.u + (v - measured.y()) * J.v;
-    hessian.noalias() += J.u * J.u.transpose();
-    hessian.noalias() += J.v * J.v.transpose();
+    sums.add(u, v, inverse_z, u - measured.x(), v - measured.y(), 1.0, 1.0);
   }
   if (num_inliers < kMinPolishInliers) return false;
+  Matrix6d hessian = hessian_of(sums);
   hessian.diagonal() *= 1.0 + 1e-6;  // keeps a flat direction from running away
-  const Vector6d change = -hessian.ldlt().solve(gradient);
+  const Vector6d change = -hessian.ldlt().solve(gradient_of(sums));
   if (!change.allFinite()) return false;
   *T_map_camera = moved_in_camera_axes(*T_map_camera, change);
   return true;

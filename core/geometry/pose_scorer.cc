@@ -120,22 +120,4 @@ float PoseScorer::cost(const ScoredPose& pose, float limit) const {
   return function(input, pose, limit);
 }
 
-bool PoseScorer::is_distance_consistent(std::size_t i, std::size_t j, float relative) const {
-  const float dx = x_[i] * depth_[i] - x_[j] * depth_[j], dy = y_[i] * depth_[i] - y_[j] * depth_[j], dz = depth_[i] - depth_[j];
-  const float dX = X_[i] - X_[j], dY = Y_[i] - Y_[j], dZ = Z_[i] - Z_[j];
-  const float in_camera = std::sqrt(dx * dx + dy * dy + dz * dz), in_map = std::sqrt(dX * dX + dY * dY + dZ * dZ);
-  return std::abs(in_camera - in_map) <= relative * std::max(depth_[i], depth_[j]);
-}
-
-PoseScorer::PairCost PoseScorer::pair_cost(const ScoredPose& pose, std::size_t i) const {
-  const float px = pose.R[0] * X_[i] + pose.R[1] * Y_[i] + pose.R[2] * Z_[i] + pose.t[0];
-  const float py = pose.R[3] * X_[i] + pose.R[4] * Y_[i] + pose.R[5] * Z_[i] + pose.t[1];
-  const float pz = pose.R[6] * X_[i] + pose.R[7] * Y_[i] + pose.R[8] * Z_[i] + pose.t[2];
-  const float inverse_z = 1.0F / pz;
-  const float du = px * inverse_z - x_[i], dv = py * inverse_z - y_[i];
-  const float squared = squared_focal_ * (du * du + dv * dv);
-  const bool is_inlier = squared < max_squared_error_ && pz >= min_z_[i] && pz <= max_z_[i];
-  return {is_inlier, is_inlier ? squared : max_squared_error_};
-}
-
 }  // namespace camloc

@@ -5,6 +5,7 @@
 // structure of arrays, eight pairs at a time; every instruction set gives the same bits.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -57,5 +58,26 @@ class PoseScorer {
   std::vector<float> x_, y_, X_, Y_, Z_, depth_;
   std::vector<float> min_z_, max_z_;  // where the landmark's predicted depth must lie; an empty interval is padding
 };
+
+inline bool PoseScorer::is_distance_consistent(std::size_t i, std::size_t j, float relative) const {
+  const float dx = x_[i] * depth_[i] - x_[j] * depth_[j], dy = y_[i] * depth_[i] - y_[j] * depth_[j], dz = depth_[i] - depth_[j];
+  const float dX = X_[i] - X_[j], dY = Y_[i] - Y_[j], dZ = Z_[i] - Z_[j];
+  const float in_camera = dx * dx + dy * dy + dz * dz, in_map = dX * dX + dY * dY + dZ * dZ;  // squared
+  const float tolerance = relative * std::max(depth_[i], depth_[j]);
+  // |a - b| <= t, with the squares of a and b, without roots: a^2 + b^2 - t^2 <= 2 a b.
+  const float excess = in_camera + in_map - tolerance * tolerance;
+  return (excess <= 0.0F) | (excess * excess <= 4.0F * in_camera * in_map);
+}
+
+inline PoseScorer::PairCost PoseScorer::pair_cost(const ScoredPose& pose, std::size_t i) const {
+  const float px = pose.R[0] * X_[i] + pose.R[1] * Y_[i] + pose.R[2] * Z_[i] + pose.t[0];
+  const float py = pose.R[3] * X_[i] + pose.R[4] * Y_[i] + pose.R[5] * Z_[i] + pose.t[1];
+  const float pz = pose.R[6] * X_[i] + pose.R[7] * Y_[i] + pose.R[8] * Z_[i] + pose.t[2];
+  const float inverse_z = 1.0F / pz;
+  const float du = px * inverse_z - x_[i], dv = py * inverse_z - y_[i];
+  const float squared = squared_focal_ * (du * du + dv * dv);
+  const bool is_inlier = (squared < max_squared_error_) & (pz >= min_z_[i]) & (pz <= max_z_[i]);
+  return {is_inlier, is_inlier ? squared : max_squared_error_};
+}
 
 }  // namespace camloc
