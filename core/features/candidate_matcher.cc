@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Matching by descriptor alone. One pass of the nearest-neighbour kernel finds the best and the second best candidate of
-// every feature; only where both belong to one landmark are all distances of the feature looked at again for the rival.
+// every feature; only where both belong to one landmark, and the ratio test is on, are all distances of the feature looked
+// at again for the rival.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -19,13 +20,6 @@ namespace {
 constexpr std::uint16_t kNoDistance = 257;
 constexpr std::int32_t kNotComputed = -2;
 constexpr double kTwoPi = 2 * std::numbers::pi;
-
-/// Smallest of the distances. Signed, because baseline x86-64 has a vector minimum for signed 16-bit numbers only.
-std::uint16_t smallest(const std::uint16_t* distances, std::size_t count) {
-  std::int16_t minimum = kNoDistance;
-  for (std::size_t i = 0; i < count; ++i) minimum = std::min(minimum, static_cast<std::int16_t>(distances[i]));
-  return static_cast<std::uint16_t>(minimum);
-}
 
 /// Angle in [0, 2 pi); anything that is not finite gives 0.
 double wrapped(double angle_rad) {
@@ -98,6 +92,7 @@ std::span<const Match> CandidateMatcher::match(const Features& features, const C
 void CandidateMatcher::find_best_candidates(const Features& features, const CandidateSet& candidates,
                                             std::size_t num_features) {
   const hamming::Kernels& kernels = hamming::best_kernels();
+  const bool has_ratio_test = options_.max_ratio < 1;
   std::array<hamming::TopTwo, hamming::kMaxQueriesPerCall> top;
   for (std::size_t begin = 0; begin < num_features; begin += top.size()) {
     const std::size_t count = std::min(top.size(), num_features - begin);
@@ -109,9 +104,10 @@ void CandidateMatcher::find_best_candidates(const Features& features, const Cand
       const auto best = static_cast<std::uint32_t>(top[q].best), second = static_cast<std::uint32_t>(top[q].second);
       const std::int32_t landmark = candidates.landmarks[best];
       auto rival = static_cast<std::uint16_t>(top[q].second >> 32);
+      // Without the ratio test nobody needs the rival enough to pay for a second look at all candidates.
       if (rival < kNoDistance && candidates.landmarks[second] == landmark)
-        rival = rival_distance(features.descriptors[begin + q], candidates, landmark);
-      if (options_.max_ratio < 1 && distance > options_.max_ratio * rival) continue;
+        rival = has_ratio_test ? rival_distance(features.descriptors[begin + q], candidates, landmark) : kNoDistance;
+      if (has_ratio_test && distance > options_.max_ratio * rival) continue;
       matches_.push_back({static_cast<std::int32_t>(begin + q), landmark, distance, rival});
       candidate_.push_back(best);
     }
@@ -124,7 +120,7 @@ std::uint16_t CandidateMatcher::rival_distance(const Descriptor& descriptor, con
   // Strike the landmark's own appearances out, then take the plain minimum.
   for (std::int32_t i = first_in_slot_[slot_of(candidates, landmark)]; i >= 0; i = next_candidate_[static_cast<std::size_t>(i)])
     distances_[static_cast<std::size_t>(i)] = kNoDistance;
-  return smallest(distances_.data(), candidates.size);
+  return hamming::smallest(distances_.data(), candidates.size);
 }
 
 /// Slot of a landmark that is among the candidates, or the empty slot where it belongs.
@@ -157,7 +153,7 @@ std::int32_t CandidateMatcher::best_feature_of(std::size_t slot, const Features&
        candidate = next_candidate_[static_cast<std::size_t>(candidate)]) {
     hamming_distances(candidates.descriptors[static_cast<std::size_t>(candidate)], {features.descriptors.data(), num_features},
                       distances_.data());
-    const std::uint16_t distance = smallest(distances_.data(), num_features);
+    const std::uint16_t distance = hamming::smallest(distances_.data(), num_features);
     if (distance > best_distance) continue;
     const auto feature = static_cast<std::int32_t>(std::find(distances_.begin(), distances_.end(), distance) - distances_.begin());
     if (distance < best_distance || feature < best) best_distance = distance, best = feature;

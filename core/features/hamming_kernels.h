@@ -5,6 +5,7 @@
 // table; the tables differ in speed only.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -56,6 +57,14 @@ inline void nearest_by_pairs(const Descriptor* queries, std::size_t num_queries,
   for (std::size_t q = 0; q < num_queries; ++q)
     for (std::size_t i = begin; i < end; ++i)
       top[q].add(make_key(static_cast<std::uint32_t>(distance(queries[q], train[i])), static_cast<std::uint32_t>(i)));
+}
+
+/// Smallest of `count` distances; 257 of none. Signed, because baseline x86-64 has a vector minimum for signed 16-bit numbers
+/// only.
+inline std::uint16_t smallest(const std::uint16_t* distances, std::size_t count) {
+  std::int16_t minimum = 257;
+  for (std::size_t i = 0; i < count; ++i) minimum = std::min(minimum, static_cast<std::int16_t>(distances[i]));
+  return static_cast<std::uint16_t>(minimum);
 }
 
 extern const Kernels kScalarKernels;

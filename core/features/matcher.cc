@@ -127,17 +127,15 @@ void GuidedMatcher::measure_window(std::span<const Descriptor> appearances) {
 }
 
 Match GuidedMatcher::best_in_window() const {
-  // Equal distances: the first feature. A key has the distance in its upper half.
-  std::uint64_t best_key = std::uint64_t{kNoDistance} << 32;
-  std::size_t best = 0;
-  for (std::size_t i = 0; i < window_size_; ++i) {
-    const std::uint64_t key = std::uint64_t{distances_[i]} << 32 | static_cast<std::uint32_t>(table_.features[window_[i]]);
-    best = key < best_key ? i : best;
-    best_key = std::min(key, best_key);
-  }
   Match match;
-  const auto distance = static_cast<std::uint16_t>(best_key >> 32);
-  if (distance >= kNoDistance || distance > options_.max_distance) return match;
+  const std::uint16_t distance = hamming::smallest(distances_.data(), window_size_);
+  if (distance >= kNoDistance || distance > options_.max_distance) return match;  // most landmarks end here
+  std::size_t best = window_size_;
+  for (std::size_t i = 0; i < window_size_; ++i) {
+    if (distances_[i] != distance) continue;
+    // Equal distances: the first feature.
+    if (best == window_size_ || table_.features[window_[i]] < table_.features[window_[best]]) best = i;
+  }
   // Features of the same spot on a far level are no rivals: they describe the landmark at another scale.
   const int best_level = table_.levels[window_[best]];
   for (std::size_t i = 0; i < window_size_; ++i) {
@@ -145,7 +143,7 @@ Match GuidedMatcher::best_in_window() const {
     match.second = std::min(match.second, is_rival ? distances_[i] : kNoDistance);
   }
   if (options_.max_ratio < 1 && distance > options_.max_ratio * match.second) return Match{};
-  match.feature = static_cast<std::int32_t>(best_key & 0xffffffffU);
+  match.feature = table_.features[window_[best]];
   match.distance = distance;
   return match;
 }

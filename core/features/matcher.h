@@ -18,7 +18,9 @@ struct Match {
   std::int32_t feature = -1;    ///< index into Features
   std::int32_t landmark = -1;   ///< the caller's id
   std::uint16_t distance = 0;   ///< Hamming distance
-  std::uint16_t second = 257;   ///< distance of the best rival: another landmark (candidates) or feature (guided)
+  /// Distance of the best rival: another landmark (candidates) or feature (guided); 257: none. The candidate matcher with its
+  /// ratio test off also says 257 where the two best candidates belong to one landmark.
+  std::uint16_t second = 257;
 };
 
 /// Buckets of keypoints for window queries. Allocates at construction only.
