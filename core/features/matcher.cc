@@ -139,8 +139,8 @@ Match GuidedMatcher::best_in_window() const {
   // Features of the same spot on a far level are no rivals: they describe the landmark at another scale.
   const int best_level = table_.levels[window_[best]];
   for (std::size_t i = 0; i < window_size_; ++i) {
-    const bool is_rival = (i != best) & (std::abs(table_.levels[window_[i]] - best_level) <= 1);
-    match.second = std::min(match.second, is_rival ? distances_[i] : kNoDistance);
+    if (distances_[i] >= match.second || i == best) continue;  // smaller ones are rare: a branch that can be predicted
+    if (std::abs(table_.levels[window_[i]] - best_level) <= 1) match.second = distances_[i];
   }
   if (options_.max_ratio < 1 && distance > options_.max_ratio * match.second) return Match{};
   match.feature = table_.features[window_[best]];
