@@ -58,6 +58,12 @@ bool is_external(const CLI::App& app, const std::vector<std::string>& arguments)
 /// Becomes camloc-X; returns 2 where there is none.
 int run_external(const CLI::App& app, const std::vector<std::string>& arguments) {
   const auto program = find_program("camloc-" + arguments[0]);
+  if (arguments[0] == "map" && arguments.size() > 1 && arguments[1] != "build") {
+    const std::string closest = camloc::tools::closest_word(arguments[1], {"build", "info", "verify"});
+    camloc::tools::print_error("camloc", "no command 'map " + arguments[1] + "'; " +
+                                             (closest.empty() ? "see 'camloc map --help'" : "did you mean 'map " + closest + "'?"));
+    return 2;
+  }
   if (program) return camloc::tools::report(exec_program(*program, {arguments.begin() + 1, arguments.end()}));
 
   std::vector<std::string> known{"map", "sim"};
