@@ -21,9 +21,9 @@
 namespace camloc {
 
 struct GlobalSearchOptions {
-  int num_keyframes = 20;           ///< retrieved
-  int max_places = 4;
-  int max_keyframes_per_place = 8;
+  int num_keyframes = 80;           ///< retrieved: many, or the twin of a look-alike place is not among them
+  int max_places = 6;
+  int max_keyframes_per_place = 6;
   double place_radius_m = 2.0;      ///< views of one place: camera centres this close
   double place_angle_rad = 1.2;     ///< and viewing directions
   int max_candidates = 8000;        ///< descriptors of one place

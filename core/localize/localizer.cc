@@ -10,11 +10,12 @@ namespace {
 
 /// After this long without a verified pose a prediction is no better than a global search.
 constexpr std::int64_t kMaxTrackingGapNs = 1'000'000'000;
-/// For so long the last verified pose limits where the camera can be; a fix that contradicts it must be found twice
-/// within this time to be believed.
-constexpr std::int64_t kMotionMemoryNs = 1'000'000'000;
-/// From here on a pose needs no prediction to back it.
-constexpr std::uint32_t kStrongInliers = 60;
+/// For so long the last verified pose limits where the camera can be. Without that a stretch that looks alike at the other
+/// end of the corridor is taken for the real one right after a moment without features.
+constexpr std::int64_t kMotionMemoryNs = 5'000'000'000;
+/// A fix that contradicts it is believed once it has been found again and again for so long.
+constexpr std::int64_t kConfirmationNs = 1'000'000'000;
+constexpr std::int64_t kMaxConfirmationGapNs = 500'000'000;
 /// A hypothesis with fewer inliers is not even a coarse place.
 constexpr std::uint32_t kMinCoarseInliers = 15;
 
@@ -49,6 +50,7 @@ const Localization& Localizer::process(const Frame& frame) {
   begin(frame);
   if (map_->is_damaged()) return decline(frame, {.reason = Reason::kMapDamaged});
   if (!observations_.observe(frame)) return decline(frame, {.reason = Reason::kNoImage});
+  result_.num_features = static_cast<std::uint32_t>(observations_.size());
   timer_.finish(Stage::kExtract);
   if (observations_.size() < verification_.min_features) return decline(frame, {.reason = Reason::kFewFeatures});
 
@@ -103,16 +105,17 @@ Localizer::Candidate Localizer::search_globally(const Frame& frame) {
 // motion so far expects it. Strong evidence may contradict the prediction within what a camera can do.
 bool Localizer::fits_motion(const Frame& frame, const PoseHypothesis& hypothesis) const {
   if (!is_recent(frame.stamp_ns, kMotionMemoryNs)) return true;
-  if (hypothesis.num_inliers < kStrongInliers) return motion_.is_expected(frame.stamp_ns, hypothesis.T_map_camera, hypothesis.covariance);
+  if (hypothesis.num_inliers < verification_.strong_inliers) return motion_.is_expected(frame.stamp_ns, hypothesis.T_map_camera, hypothesis.covariance);
   return motion_.is_plausible(frame.stamp_ns, hypothesis.T_map_camera);
 }
 
 bool Localizer::is_confirmed(const Frame& frame, const PoseHypothesis& hypothesis) {
-  if (hypothesis.num_inliers < kStrongInliers) return false;
-  const bool is_second = unconfirmed_.has_fix() && frame.stamp_ns - unconfirmed_.last_stamp_ns() <= kMotionMemoryNs &&
-                         unconfirmed_.is_plausible(frame.stamp_ns, hypothesis.T_map_camera);
+  if (hypothesis.num_inliers < verification_.strong_inliers) return false;
+  const bool is_continued = unconfirmed_.has_fix() && frame.stamp_ns - unconfirmed_.last_stamp_ns() <= kMaxConfirmationGapNs &&
+                            unconfirmed_.is_plausible(frame.stamp_ns, hypothesis.T_map_camera);
+  if (!is_continued) unconfirmed_since_ns_ = frame.stamp_ns;
   unconfirmed_.add_fix(frame.stamp_ns, hypothesis.T_map_camera, Matrix6d::Zero(), false);
-  return is_second;
+  return frame.stamp_ns - unconfirmed_since_ns_ >= kConfirmationNs;
 }
 
 const Localization& Localizer::accept(const Frame& frame, const Candidate& candidate) {
@@ -154,7 +157,6 @@ const Localization& Localizer::decline(const Frame& frame, const Candidate& cand
 const Localization& Localizer::finish(const Candidate& candidate) {
   const PoseHypothesis& hypothesis = candidate.hypothesis;
   result_.is_tracked = candidate.is_tracked;
-  result_.num_features = static_cast<std::uint32_t>(observations_.size());
   result_.num_visible = hypothesis.num_visible;
   result_.num_matches = hypothesis.num_matches;
   result_.num_inliers = hypothesis.num_inliers;

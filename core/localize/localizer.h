@@ -68,7 +68,8 @@ class Localizer {
   PoseEstimator estimator_;
   GlobalSearch global_search_;
   MotionModel motion_;
-  MotionModel unconfirmed_;   ///< the last implausible fix: a second one nearby confirms it
+  MotionModel unconfirmed_;   ///< the last fix that contradicts the motion so far
+  std::int64_t unconfirmed_since_ns_ = 0;  ///< when fixes that agree with it began
   CalibrationMonitor calibration_;
   VerificationOptions verification_;
   double focal_px_;

@@ -12,7 +12,7 @@
 namespace camloc {
 
 struct MotionModelOptions {
-  double max_speed_m_per_s = 4.0;            ///< faster is implausible for a head or a robot indoors
+  double max_speed_m_per_s = 3.0;            ///< faster is implausible for a head or a robot indoors
   double max_turn_rad_per_s = 7.0;
   double speed_change_m_per_s = 0.4;         ///< standard deviation of what the velocity does until the next frame
   double turn_change_rad_per_s = 0.5;

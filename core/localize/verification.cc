@@ -7,9 +7,20 @@
 
 namespace camloc {
 
+namespace {
+
+bool contradicts_depth(const PoseHypothesis& hypothesis, const VerificationOptions& options) {
+  const bool is_thin = hypothesis.num_inliers < options.strong_inliers;
+  const double min_inliers_agree = is_thin ? options.min_depth_agreement_thin : options.min_depth_agreement;
+  const double min_map_agrees = is_thin ? options.min_map_depth_agreement_thin : options.min_map_depth_agreement;
+  return (hypothesis.num_with_depth >= options.min_depth_samples && hypothesis.depth_agreement < min_inliers_agree) ||
+         (hypothesis.num_map_depth >= options.min_map_depth_samples && hypothesis.map_depth_agreement < min_map_agrees);
+}
+
+}  // namespace
+
 Reason verify(const PoseHypothesis& hypothesis, double margin, bool is_tracked, const VerificationOptions& options) {
   const bool has_map_depth = hypothesis.num_map_depth >= options.min_map_depth_samples;
-  const bool has_inlier_depth = hypothesis.num_with_depth >= options.min_depth_samples;
   const std::uint32_t min_inliers = is_tracked ? options.min_tracked_inliers : has_map_depth ? options.min_inliers : options.min_inliers_no_depth;
 
   if (hypothesis.num_matches < min_inliers) return Reason::kFewMatches;
@@ -19,8 +30,7 @@ Reason verify(const PoseHypothesis& hypothesis, double margin, bool is_tracked, 
   if (hypothesis.inlier_ratio() < options.min_inlier_ratio) return Reason::kLowInlierRatio;
   if (hypothesis.spread < options.min_spread) return Reason::kPoorSpread;
   if (margin < options.min_margin) return Reason::kAmbiguous;
-  if (has_inlier_depth && hypothesis.depth_agreement < options.min_depth_agreement) return Reason::kDepthInconsistent;
-  if (has_map_depth && hypothesis.map_depth_agreement < options.min_map_depth_agreement) return Reason::kDepthInconsistent;
+  if (contradicts_depth(hypothesis, options)) return Reason::kDepthInconsistent;
   const Vector6d variance = hypothesis.covariance.diagonal();
   if (!(variance.head<3>().maxCoeff() < options.max_position_sigma_m * options.max_position_sigma_m)) return Reason::kUncertain;
   if (!(variance.tail<3>().maxCoeff() < options.max_rotation_sigma_rad * options.max_rotation_sigma_rad)) return Reason::kUncertain;
