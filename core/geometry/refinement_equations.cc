@@ -77,6 +77,28 @@ CAMLOC_INLINE void load_tail(const KernelInput& in, std::size_t i, std::size_t c
   for (std::size_t lane = 0; lane < kLanes; ++lane) pairs->is_real[lane] = lane < count ? -1 : 0;
 }
 
+CAMLOC_INLINE void add_focal_terms(const Doubles& u, const Doubles& v, const Doubles& inverse_z, const Doubles& weight,
+                                   KernelSums* sums) {
+  const Doubles d = u * u + v * v, r = 1.0 + d;
+  sums->ad += weight * inverse_z * d;
+  sums->ur += weight * u * r;
+  sums->vr += weight * v * r;
+}
+
+CAMLOC_INLINE void add_depth_rows(const Doubles& uz, const Doubles& vz, const Doubles& dz, const Doubles& weight,
+                                  KernelSums* sums) {
+  const Doubles weighted_dz = weight * dz;
+  sums->d22 += weight;
+  sums->d23 += weight * vz;
+  sums->d24 -= weight * uz;
+  sums->d33 += weight * vz * vz;
+  sums->d34 -= weight * uz * vz;
+  sums->d44 += weight * uz * uz;
+  sums->e2 -= weighted_dz;
+  sums->e3 -= weighted_dz * vz;
+  sums->e4 += weighted_dz * uz;
+}
+
 template <int N, RobustKernel kKernel>
 CAMLOC_INLINE void add_pairs(const KernelInput& in, const Pairs& pairs, KernelSums* sums) {
   const RefinementModel& model = in.model;
@@ -129,22 +151,10 @@ CAMLOC_INLINE void add_pairs(const KernelInput& in, const Pairs& pairs, KernelSu
   const Doubles gradient_weight = scale * weight, pixel_weight = scale * gradient_weight;
   sums->pixel.add(safe_u, safe_v, inverse_z, safe_du, safe_dv, gradient_weight, pixel_weight);
   if constexpr (N == 7) {
-    const Doubles d = safe_u * safe_u + safe_v * safe_v, r = 1.0 + d;
-    sums->ad += pixel_weight * inverse_z * d;
-    sums->ur += pixel_weight * safe_u * r;
-    sums->vr += pixel_weight * safe_v * r;
+    add_focal_terms(safe_u, safe_v, inverse_z, pixel_weight, sums);
     sums->g6 += gradient_weight * (safe_u * safe_du + safe_v * safe_dv);
   }
-  const Doubles uz = safe_u * z, vz = safe_v * z, weighted_dz = depth_weight * (is_depth_near ? dz : zero);
-  sums->d22 += depth_weight;
-  sums->d23 += depth_weight * vz;
-  sums->d24 -= depth_weight * uz;
-  sums->d33 += depth_weight * vz * vz;
-  sums->d34 -= depth_weight * uz * vz;
-  sums->d44 += depth_weight * uz * uz;
-  sums->e2 -= weighted_dz;
-  sums->e3 -= weighted_dz * vz;
-  sums->e4 += weighted_dz * uz;
+  add_depth_rows(safe_u * z, safe_v * z, is_depth_near ? dz : zero, depth_weight, sums);
 }
 
 CAMLOC_INLINE double sum_of(const Doubles& v) { return (v[0] + v[2]) + (v[1] + v[3]); }
