@@ -148,9 +148,12 @@ Status eval(const EvalArguments& arguments) {
   if (errors.num_compared == 0 && errors.num_localized > 0) {
     return {ErrorCode::kInvalid, arguments.reference_path + ": has no pose at the times of " + arguments.estimate_path + ": is it of the same recording?"};
   }
+  if (!arguments.png_path.empty()) {
+    if (Status status = draw(arguments, *estimate, *reference, errors); !status) return status;
+  }
   if (arguments.is_json) std::printf("%s\n", errors_json(errors, *estimate).dump(1).c_str());
   else print_errors(errors, *estimate);
-  return arguments.png_path.empty() ? Status::ok() : draw(arguments, *estimate, *reference, errors);
+  return Status::ok();
 }
 
 }  // namespace
@@ -164,8 +167,8 @@ void add_eval_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"none", "se3"}))->capture_default_str();
   command->add_option("--frames", arguments->frames, "With a reference folder: the frames that were tried, start:stop:step[,...]");
   command->add_option("--camera", arguments->camera_path, "Camera file that says whose poses the folder has (default: as noted in the estimate)");
-  command->add_option("--map", arguments->map_path, "Map to draw in the picture");
-  command->add_option("--png", arguments->png_path, "Write a top view of map, reference and estimate");
+  CLI::Option* png = command->add_option("--png", arguments->png_path, "Write a top view of map, reference and estimate");
+  command->add_option("--map", arguments->map_path, "Map to draw in the picture")->needs(png);
   command->add_flag("--json", arguments->is_json, "Print JSON");
   command->footer("Example: camloc eval --estimate traj.tum --reference recordings/kitchen --map kitchen.cmap --png result.png\n"
                   "Exit code: 0 done (however large the errors are), 1 failed, 2 wrong usage or configuration.");

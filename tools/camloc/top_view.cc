@@ -108,9 +108,10 @@ void draw_estimate(cv::Mat& canvas, const TopView& view, const Projection& proje
     cv::Scalar color = kGood;
     if (i < view.error_m.size() && view.error_m[i] > kGoodM) color = view.error_m[i] > kFairM ? kBad : kFair;
     const cv::Point at = projection(pose.translation);
-    const Eigen::Vector3d ahead = pose.translation + pose.rotation * Eigen::Vector3d(0, 0, 12.0 / projection.px_per_m);
+    const Eigen::Vector3d ahead = pose.translation + pose.rotation * Eigen::Vector3d(0, 0, 16.0 / projection.px_per_m);
     cv::line(canvas, at, projection(ahead), color, 1, cv::LINE_AA);
-    cv::circle(canvas, at, 3, color, cv::FILLED, cv::LINE_AA);
+    cv::circle(canvas, at, 5, kBackground, cv::FILLED, cv::LINE_AA);  // a rim, so that dots on the line stay apart
+    cv::circle(canvas, at, 4, color, cv::FILLED, cv::LINE_AA);
   }
 }
 
@@ -120,10 +121,11 @@ Status write_top_view(const TopView& view, const std::string& path, int width_px
   const std::vector<Eigen::Vector3d> landmarks = landmark_positions(view.map);
   const Projection projection = fit(landmarks, view.truth, view.estimate, width_px);
   cv::Mat canvas(projection.height_px, width_px, CV_8UC3, kBackground);
-  const cv::Rect inside(0, 0, canvas.cols, canvas.rows);
+  // Far landmarks must not run into the title and the scale.
+  const cv::Rect plot(0, kHeader, canvas.cols, canvas.rows - kHeader - kFooter / 2 - 8);
   for (const auto& p : landmarks) {
     const cv::Point at = projection(p);
-    if (inside.contains(at)) cv::circle(canvas, at, 1, kLandmark, cv::FILLED);
+    if (plot.contains(at)) cv::circle(canvas, at, 1, kLandmark, cv::FILLED);
   }
   if (view.map != nullptr) {
     for (std::uint32_t i = 0; i < view.map->keyframes().size(); ++i) {
@@ -133,7 +135,7 @@ Status write_top_view(const TopView& view, const std::string& path, int width_px
   for (std::size_t i = 1; i < view.truth.size(); ++i) {
     // A line across a gap would show a walk that nobody made.
     if ((view.truth[i].translation - view.truth[i - 1].translation).norm() > 1.0) continue;
-    cv::line(canvas, projection(view.truth[i - 1].translation), projection(view.truth[i].translation), kTruth, 1, cv::LINE_AA);
+    cv::line(canvas, projection(view.truth[i - 1].translation), projection(view.truth[i].translation), kTruth, 2, cv::LINE_AA);
   }
   draw_estimate(canvas, view, projection);
   draw_text(canvas, view.title, {kMargin, 28}, kInk, 0.6);
