@@ -26,6 +26,13 @@ Matrix6d coarse_uncertainty() {
   return variance.asDiagonal();
 }
 
+/// Levels of image and map must be the same ones: the map rules.
+LocalizerOptions with_pyramid_of(const MapView& map, LocalizerOptions options) {
+  options.orb.scale_factor = map.info().orb_scale_factor;
+  options.orb.num_levels = static_cast<int>(map.info().orb_num_levels);
+  return options;
+}
+
 PoseEstimatorOptions estimator_options(const LocalizerOptions& options) {
   PoseEstimatorOptions estimator;
   estimator.refinement.use_depth = options.use_depth;
@@ -36,11 +43,11 @@ PoseEstimatorOptions estimator_options(const LocalizerOptions& options) {
 
 Localizer::Localizer(const MapView& map, const RgbdCamera& camera, const LocalizerOptions& options)
     : map_(&map),
-      options_(options),
-      timer_(options.now_ns),
-      observations_(camera, options.orb, options.use_depth),
-      estimator_(map, camera, options.orb, estimator_options(options), &timer_),
-      global_search_(map, options.orb, GlobalSearchOptions{}, &timer_),
+      options_(with_pyramid_of(map, options)),
+      timer_(options_.now_ns),
+      observations_(camera, options_.orb, options_.use_depth),
+      estimator_(map, camera, options_.orb, estimator_options(options_), &timer_),
+      global_search_(map, options_.orb, GlobalSearchOptions{}, &timer_),
       motion_(MotionModelOptions{}),
       unconfirmed_(MotionModelOptions{}),
       calibration_(CalibrationMonitorOptions{}),

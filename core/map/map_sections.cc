@@ -134,7 +134,7 @@ Status check_meta(const map_format::MetaRecord& meta) {
       !(meta.pose_sigma_rad >= 0 && std::isfinite(meta.pose_sigma_rad))) {
     return corrupt("negative or infinite pose sigma");
   }
-  if (!(meta.orb_scale_factor >= 1 && meta.orb_scale_factor <= 4) || meta.orb_num_levels < 1 || meta.orb_num_levels > 32) {
+  if (!(meta.orb_scale_factor >= 1.01F && meta.orb_scale_factor <= 4) || meta.orb_num_levels < 1 || meta.orb_num_levels > 32) {
     return corrupt("impossible image pyramid");
   }
   return Status::ok();
