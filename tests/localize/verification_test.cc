@@ -106,6 +106,23 @@ TEST(Verification, EveryFigureHasItsReason) {
   }
 }
 
+TEST(Verification, ThinEvidenceNeedsDepthToConfirmIt) {
+  const VerificationOptions o;
+  const auto with = [&](std::uint32_t num_inliers, double inliers_agree, double map_agrees) {
+    return verdict([=](Figures* f) {
+      f->hypothesis.num_inliers = num_inliers;
+      f->hypothesis.num_matches = num_inliers + 5;
+      f->hypothesis.depth_agreement = inliers_agree;
+      f->hypothesis.map_depth_agreement = map_agrees;
+    });
+  };
+  EXPECT_EQ(with(o.strong_inliers, o.min_depth_agreement_thin - 0.01, 0.9), Reason::kNone);
+  EXPECT_EQ(with(o.strong_inliers - 1, o.min_depth_agreement_thin - 0.01, 0.9), Reason::kDepthInconsistent);
+  EXPECT_EQ(with(o.strong_inliers, 0.9, o.min_map_depth_agreement_thin - 0.01), Reason::kNone);
+  EXPECT_EQ(with(o.strong_inliers - 1, 0.9, o.min_map_depth_agreement_thin - 0.01), Reason::kDepthInconsistent);
+  EXPECT_EQ(with(o.strong_inliers - 1, o.min_depth_agreement_thin + 0.01, o.min_map_depth_agreement_thin + 0.01), Reason::kNone);
+}
+
 TEST(Verification, TooFewDepthsSayNothing) {
   EXPECT_EQ(verdict([](Figures* f) {
               f->hypothesis.num_with_depth = 11;
