@@ -63,9 +63,15 @@ const Localization& Localizer::process(const Frame& frame) {
 
   Candidate candidate = track(frame);
   if (candidate.reason != Reason::kNone) candidate = search_globally(frame);
-  if (candidate.hypothesis.has_focal_scale) calibration_.add(candidate.hypothesis.focal_scale, candidate.hypothesis.focal_scale_sigma);
+  watch_calibration(candidate.hypothesis);
   timer_.finish(Stage::kVerify);
   return candidate.reason == Reason::kNone ? accept(frame, candidate) : decline(frame, candidate);
+}
+
+// Matches with another place ask for any focal length: only what could be a pose has a say.
+void Localizer::watch_calibration(const PoseHypothesis& hypothesis) {
+  if (!hypothesis.has_focal_scale || hypothesis.num_inliers < verification_.min_inliers) return;
+  calibration_.add(hypothesis.focal_scale, hypothesis.focal_scale_sigma);
 }
 
 void Localizer::reset() {

@@ -55,6 +55,7 @@ class Localizer {
   [[nodiscard]] Candidate search_globally(const Frame& frame);
   [[nodiscard]] bool fits_motion(const Frame& frame, const PoseHypothesis& hypothesis) const;
   [[nodiscard]] bool is_confirmed(const Frame& frame, const PoseHypothesis& hypothesis);
+  void watch_calibration(const PoseHypothesis& hypothesis);
   const Localization& accept(const Frame& frame, const Candidate& candidate);
   const Localization& decline(const Frame& frame, const Candidate& candidate);
   const Localization& finish(const Candidate& candidate);
