@@ -119,17 +119,13 @@ void PoseEstimator::summarize(const FrameObservations& frame, const PoseRefineme
   hypothesis->rms_px = refined.rms_px;
 
   std::uint64_t occupied = 0;
-  double sum_depth_m = 0;
-  const Rigid3 T_camera_map = refined.T_map_camera.inverse();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     if (inlier_mask_[i] == 0) continue;
     const Keypoint& keypoint = frame.features().keypoints[static_cast<std::size_t>(pairs_.feature[i])];
     const int column = std::clamp(static_cast<int>(keypoint.u) * kSpreadColumns / color_.width, 0, kSpreadColumns - 1);
     const int row = std::clamp(static_cast<int>(keypoint.v) * kSpreadRows / color_.height, 0, kSpreadRows - 1);
     occupied |= std::uint64_t{1} << (row * kSpreadColumns + column);
-    sum_depth_m += (T_camera_map * Eigen::Vector3d(pairs_.X[i], pairs_.Y[i], pairs_.Z[i])).z();
   }
-  hypothesis->mean_depth_m = sum_depth_m / std::max(1, refined.num_inliers);
   hypothesis->spread = static_cast<double>(std::popcount(occupied)) / (kSpreadColumns * kSpreadRows);
 }
 
@@ -160,10 +156,9 @@ void PoseEstimator::measure_focal_scale(PoseHypothesis* hypothesis) {
   hypothesis->has_focal_scale = true;
   hypothesis->focal_scale = fitted.focal_scale;
   hypothesis->focal_scale_sigma = fitted.focal_scale_sigma;
-  // A focal length that is off by a share moves the camera by about that share of the depth.
-  const double deviation = fitted.focal_scale - 1.0;
-  const double excess = std::max(0.0, deviation * deviation - fitted.focal_scale_sigma * fitted.focal_scale_sigma);
-  hypothesis->covariance.diagonal().head<3>().array() += excess * hypothesis->mean_depth_m * hypothesis->mean_depth_m;
+  // How far the pose moves when the focal length is free is what a wrong one can hide.
+  const Vector6d shift = pose_error(fitted.T_map_camera, hypothesis->T_map_camera);
+  hypothesis->covariance += shift * shift.transpose();
 }
 
 // Landmarks in front of the measured surface by more than its noise are where the camera sees through: at a wrong pose

@@ -35,7 +35,6 @@ struct PoseHypothesis {
   std::uint32_t num_map_depth = 0;  ///< landmarks in view whose pixel has a measured depth and that nothing hides
   double map_depth_agreement = 1;   ///< share of those that lie on the measured surface; the others are seen through
   double rms_px = 0;
-  double mean_depth_m = 0;         ///< of the inliers' landmarks
   double focal_scale = 1;          ///< true / assumed focal length that fits these matches best
   double focal_scale_sigma = 1;
   bool has_focal_scale = false;
