@@ -170,6 +170,7 @@ std::string Service::on_control(ControlCommand command) {
       log_.info("position forgotten on request");
       return control_reply(Status::ok());
   }
+  refresh_counters();
   board_.stamp(monotonic_ns(), realtime_ns());
   return control_reply(board_.get());
 }
@@ -295,6 +296,13 @@ void Service::connect() {
 }
 
 void Service::publish_status() {
+  refresh_counters();
+  board_.stamp(monotonic_ns(), realtime_ns());
+  publisher_.publish(board_.get());
+}
+
+// What the capture thread counts, as of now: between two messages the control socket asks, too.
+void Service::refresh_counters() {
   status_t& counters = board_.counters();
   if (capture_) {
     counters.frames_received = static_cast<std::int64_t>(capture_->num_received());
@@ -303,8 +311,6 @@ void Service::publish_status() {
     counters.source_restarts = static_cast<std::int64_t>(capture_->num_restarts());
   }
   counters.reset_counter = std::int64_t{reset_offset_} + num_resets_;
-  board_.stamp(monotonic_ns(), realtime_ns());
-  publisher_.publish(board_.get());
 }
 
 // Twice as often as asked for, and only while things move; see ProgressWatch.

@@ -78,6 +78,7 @@ class Service {
   void set_state(State state, const char* text);
   void connect();
   void publish_status();
+  void refresh_counters();
   void feed_watchdog(std::int64_t now_ns);
   void fail(const Status& status);
 
