@@ -115,7 +115,6 @@ void PoseEstimator::summarize(const FrameObservations& frame, const PoseRefineme
   hypothesis->num_inliers = static_cast<std::uint32_t>(refined.num_inliers);
   hypothesis->num_with_depth = static_cast<std::uint32_t>(refined.num_with_depth);
   hypothesis->depth_agreement = refined.num_with_depth == 0 ? 1.0 : static_cast<double>(refined.num_depth_inliers) / refined.num_with_depth;
-  hypothesis->mean_relative_depth_error = refined.mean_relative_depth_error;
   hypothesis->rms_px = refined.rms_px;
 
   std::uint64_t occupied = 0;

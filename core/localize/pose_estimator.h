@@ -31,7 +31,6 @@ struct PoseHypothesis {
   double spread = 0;               ///< share of the image's 8 x 6 cells that hold an inlier
   std::uint32_t num_with_depth = 0;
   double depth_agreement = 1;      ///< share of inliers with depth whose depth agrees
-  double mean_relative_depth_error = 0;
   std::uint32_t num_map_depth = 0;  ///< landmarks in view whose pixel has a measured depth and that nothing hides
   double map_depth_agreement = 1;   ///< share of those that lie on the measured surface; the others are seen through
   double rms_px = 0;
