@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Extended bundle adjustment: camera poses and landmarks that fit all observations best, where the measured depth is an
+// observation of its own beside the reprojection error ("Camera localization for augmented reality and indoor positioning",
+// 2019), with a standard deviation that grows with the square of the distance. The cost, with a robust kernel rho over each
+// whitened residual,
+//     sum over observations of  rho_px(|f (x - x_predicted)|^2 / sigma_px^2) + rho_depth((depth - z)^2 / sigma(z)^2)
+//   + sum over point priors of  |p - p_prior|^2 / sigma^2
+// is minimized by Levenberg-Marquardt on the Schur complement (Triggs, McLauchlan, Hartley, Fitzgibbon, "Bundle adjustment -
+// a modern synthesis", 2000): the landmarks are eliminated, what remains is a system over the cameras, dense where they are
+// few and sparse where they are many. The scale of the depth is never free: without an absolute reference a free scale
+// shrinks the map to a point.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "core/geometry/rigid3.h"
+
+namespace camloc {
+
+/// A landmark as one camera saw it.
+struct BundleObservation {
+  std::uint32_t camera = 0, landmark = 0;
+  float x = 0, y = 0;    ///< normalized image coordinates, undistorted
+  float depth_m = 0;     ///< measured along the optical axis, 0 = none
+  float sigma_px = 1;    ///< standard deviation of the feature position, pixels of level 0
+};
+
+/// A landmark whose position is known, e.g. a surveyed control point.
+struct PointPrior {
+  std::uint32_t landmark = 0;
+  Eigen::Vector3d position_m;   ///< in `map`
+  double sigma_m = 0.01;        ///< per axis
+};
+
+struct BundleProblem {
+  std::vector<Rigid3> T_map_camera;
+  std::vector<std::uint8_t> is_camera_fixed;       ///< as many as cameras
+  std::vector<Eigen::Vector3d> landmarks_m;        ///< in `map`
+  std::vector<BundleObservation> observations;     ///< ordered by landmark
+  std::vector<PointPrior> priors;
+};
+
+struct BundleOptions {
+  double focal_px = 525;
+  DepthNoise depth_noise;
+  bool use_depth = true;             ///< false: reprojection errors only, for comparison
+  double pixel_kernel_sigmas = 2.45; ///< width of the Huber kernel over |pixel residual| / sigma
+  double depth_kernel_sigmas = 2.0;  ///< and over the depth residual
+  int max_iterations = 20;
+  double min_relative_decrease = 1e-5;  ///< of the cost, below which the adjustment has converged
+  std::uint32_t max_dense_cameras = 250;  ///< free cameras up to which the reduced system is dense
+};
+
+struct BundleReport {
+  int num_iterations = 0;
+  double initial_cost = 0, final_cost = 0;
+  std::uint32_t num_free_cameras = 0;
+  bool is_sparse = false;
+  bool is_converged = false;
+  bool is_stopped = false;           ///< on_iteration said so
+};
+
+/// What an observation is off by, in its own standard deviations.
+struct BundleResidual {
+  float pixel_sigmas = 0;   ///< |f (x - x_predicted)| / sigma_px; 1e9 behind the camera
+  float depth_sigmas = 0;   ///< signed, (depth - z) / sigma(z); 0 without depth
+};
+
+/// Called after every iteration with its number and cost; return false to stop with the best state so far.
+using BundleCallback = std::function<bool(int iteration, double cost)>;
+
+/// Adjusts poses and landmarks in place. Fix at least one camera or give three priors, or the gauge is free (the damping
+/// keeps the solution near where it was). Landmarks with a single observation without depth are left alone. Memory is bounded by
+/// the problem and the reduced system; nothing is kept per pair of observations. The same problem gives the same bits.
+BundleReport adjust_bundle(const BundleOptions& options, BundleProblem* problem, const BundleCallback& on_iteration = {});
+
+/// Residuals at the current state, one per observation.
+[[nodiscard]] std::vector<BundleResidual> bundle_residuals(const BundleOptions& options, const BundleProblem& problem);
+
+}  // namespace camloc
