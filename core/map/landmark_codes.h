@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The quantized values inside the .cmap file: how a direction, a distance, an angle or a sorted list becomes bytes and
+// The quantized values inside the .cmap file: how a position, a direction, a distance, an angle or a sorted list becomes bytes and
 // what the bytes mean. Where a code stands for a bound it is rounded so that the bound still holds.
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -45,6 +46,20 @@ inline constexpr std::array<float, 256> kReferenceTable = make_reference_table()
   return static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(255, not_below - kReferenceTable.begin()));
 }
 
+/// One coordinate within the sub-map cubes: p = submap_m * (cell + code / 65535).
+struct CubeCoordinate {
+  std::int32_t cell = 0;
+  std::uint16_t code = 0;
+  friend bool operator==(const CubeCoordinate&, const CubeCoordinate&) = default;
+};
+
+/// `position_m / submap_m` must fit into 32 bits.
+[[nodiscard]] inline CubeCoordinate encode_position(float position_m, double submap_m) {
+  const double in_cells = static_cast<double>(position_m) / submap_m;
+  const double cell = std::floor(in_cells);
+  return {static_cast<std::int32_t>(cell), static_cast<std::uint16_t>(std::lround(std::clamp(in_cells - cell, 0.0, 1.0) * 65535))};
+}
+
 /// Unit vector to two bytes: the octahedron |x| + |y| + |z| = 1 unfolded into a square (Cigolle et al., "A survey of
 /// efficient representations for independent unit vectors", 2014). Codes 0..254 are -1..1; the error stays below 1 degree.
 [[nodiscard]] inline std::array<std::uint8_t, 2> encode_direction(const Eigen::Vector3f& direction) {
@@ -76,6 +91,12 @@ inline constexpr std::array<float, 256> kReferenceTable = make_reference_table()
 [[nodiscard]] inline std::uint8_t encode_angle(float angle_rad) {
   const long turn_256 = std::lround(static_cast<double>(angle_rad) / (2 * std::numbers::pi) * 256);
   return static_cast<std::uint8_t>(turn_256 & 255);
+}
+
+/// A rotation as it is stored: a quaternion whose norm is 1 to the last bits is left alone, so that reading and writing it
+/// again changes none of them.
+[[nodiscard]] inline Eigen::Quaterniond stored_rotation(const Eigen::Quaterniond& rotation) {
+  return std::abs(rotation.squaredNorm() - 1) < 1e-14 ? rotation : rotation.normalized();
 }
 
 /// Appends base-128 digits, lowest first, high bit set on all but the last.

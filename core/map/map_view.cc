@@ -87,7 +87,7 @@ Status content_error(const std::string& path, const Status& status) {
 Rigid3 to_rigid3(const map_format::TransformRecord& record) {
   const auto& q = record.rotation_wxyz;
   const auto& t = record.translation_m;
-  return {Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized(), Eigen::Vector3d(t[0], t[1], t[2])};
+  return {map_format::stored_rotation({q[0], q[1], q[2], q[3]}), Eigen::Vector3d(t[0], t[1], t[2])};
 }
 
 Intrinsics to_intrinsics(const map_format::IntrinsicsRecord& record) {

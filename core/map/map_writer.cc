@@ -123,10 +123,9 @@ Placement place(const Eigen::Vector3f& position_m, double submap_m, std::uint32_
   Placement placement;
   placement.original = original;
   for (int axis = 0; axis < 3; ++axis) {
-    const double in_cells = static_cast<double>(position_m[axis]) / submap_m;
-    const double cell = std::floor(in_cells);
-    placement.cell[axis] = static_cast<std::int32_t>(cell);
-    placement.position[axis] = static_cast<std::uint16_t>(std::lround(std::clamp(in_cells - cell, 0.0, 1.0) * 65535));
+    const map_format::CubeCoordinate coordinate = map_format::encode_position(position_m[axis], submap_m);
+    placement.cell[axis] = coordinate.cell;
+    placement.position[axis] = coordinate.code;
     placement.morton |= spread_bits(placement.position[axis]) << axis;
   }
   return placement;
@@ -148,11 +147,12 @@ std::vector<Placement> order_landmarks(const MapData& map, double submap_m) {
 
 template <std::size_t N>
 void set_text(const std::string& text, std::array<char, N>* field) {
-  std::memcpy(field->data(), text.data(), std::min(text.size(), N - 1));
+  // Up to the first zero: what a reader would see.
+  std::memcpy(field->data(), text.data(), std::min(std::strlen(text.c_str()), N - 1));
 }
 
 map_format::TransformRecord to_record(const Rigid3& T) {
-  const auto& q = T.rotation;
+  const Eigen::Quaterniond q = map_format::stored_rotation(T.rotation);
   const auto& t = T.translation;
   return {{q.w(), q.x(), q.y(), q.z()}, {t.x(), t.y(), t.z()}};
 }
