@@ -6,15 +6,6 @@
 #include "tools/camloc-map/commands.h"
 #include "tools/common/command_line.h"
 
-namespace camloc::map_tool {
-
-int report_error(const Status& status, int exit_code) {
-  tools::print_error("camloc-map", status.message());
-  return exit_code;
-}
-
-}  // namespace camloc::map_tool
-
 int main(int argc, char** argv) {
   camloc::install_mapping_guard();
   CLI::App app{"Makes maps for camloc from recorded RGB-D sequences.", "camloc-map"};

@@ -27,30 +27,39 @@ struct Viewpoint {
   double center_u = 0, center_v = 0;   ///< pixel of the optical axis
 };
 
-/// Seen along -up: the whole of `points` (1st to 99th percentile) fits into width x height with a margin. `right` may be any
-/// vector that is not parallel to `up`; zero: the direction of the largest extent.
+/// Seen along -up: the whole of `points` (1st to 99th percentile) fits into width x height with a margin. To the right goes
+/// the longer side of the smallest rectangle around the points, in a building the direction of its walls. Points that are
+/// not finite are left out; without points a metre around the origin is shown.
 [[nodiscard]] Viewpoint fit_top_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width, int height,
                                      int margin_px);
-/// Seen horizontally, up is up.
+/// Seen horizontally, up is up; looks into the top view's picture from its lower edge, with the same direction to the right.
 [[nodiscard]] Viewpoint fit_side_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width, int height,
                                       int margin_px);
 /// Seen from above and aside in perspective.
 [[nodiscard]] Viewpoint fit_perspective_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width, int height,
                                              int margin_px);
 
-/// A picture with a depth buffer.
+/// A picture with a depth buffer. What falls outside is cut off; coordinates that are not finite draw nothing.
 class PointRaster {
  public:
   PointRaster(int width, int height, Rgb background);
+  /// Dots; the nearest to the eye is seen. One colour for all, or one per point. A radius up to 0.5 is a single pixel.
   void add_points(const Viewpoint& view, std::span<const Eigen::Vector3d> points, std::span<const Rgb> colors, double radius_px);
+  void add_points(const Viewpoint& view, std::span<const Eigen::Vector3d> points, Rgb color, double radius_px) {
+    add_points(view, points, std::span<const Rgb>(&color, 1), radius_px);
+  }
+  /// A polyline over everything that was drawn before.
   void add_line(const Viewpoint& view, std::span<const Eigen::Vector3d> line, Rgb color, double width_px);
-  /// A camera as a small pyramid.
+  /// A camera as a small pyramid, drawn with lines.
   void add_camera(const Viewpoint& view, const Rigid3& T_world_camera, double size_m, Rgb color);
+  /// `height_px` is that of a capital letter; (u, v) is the left end of the line the text stands on. ASCII only.
   void add_text(int u, int v, const std::string& text, double height_px, Rgb color);
+  [[nodiscard]] static int text_width(const std::string& text, double height_px);
+  /// Filled; (u, v) is its upper left corner.
   void add_rectangle(int u, int v, int width, int height, Rgb color);
-  /// A bar of a round length with its label; orthographic views.
+  /// A bar of a round length, at most a fifth of the picture, with its label; orthographic views. (u, v) is its left end.
   void add_scale_bar(const Viewpoint& view, int u, int v, Rgb color);
-  /// A colour ramp with labels at both ends.
+  /// A colour ramp with labels below both ends; 12 px high plus 22 px of labels. (u, v) is its upper left corner.
   void add_legend(int u, int v, int width, const std::string& low, const std::string& high, std::span<const Rgb> ramp);
   [[nodiscard]] const ColorImage& image() const { return image_; }
 
@@ -59,7 +68,10 @@ class PointRaster {
   std::vector<float> depth_;
 };
 
-/// Perceptually even ramp (256 entries) for values, readable without red-green vision.
+/// Perceptually even ramp (256 entries) for values, from dark blue over green to bright yellow: its lightness grows evenly, so
+/// it is readable without red-green vision and in grey.
 [[nodiscard]] std::span<const Rgb> value_ramp();
+/// CIE lightness L* of a screen colour, 0 (black) to 100 (white).
+[[nodiscard]] double lightness_of(Rgb color);
 
 }  // namespace camloc::map_tool
