@@ -3,11 +3,12 @@
 #include "tools/camloc/trajectory_error.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
+
+#include "core/geometry/alignment.h"
 
 namespace camloc::tools {
 namespace {
@@ -41,13 +42,10 @@ ErrorStatistics statistics(std::vector<double> values) {
 
 Rigid3 rigid_alignment(const std::vector<Pair>& pairs) {
   if (pairs.size() < 3) return {};
-  Eigen::Matrix3Xd from(3, pairs.size()), to(3, pairs.size());
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    from.col(static_cast<Eigen::Index>(i)) = pairs[i].estimate.translation;
-    to.col(static_cast<Eigen::Index>(i)) = pairs[i].reference.translation;
-  }
-  const Eigen::Matrix4d T = Eigen::umeyama(from, to, false);
-  return {nearest_rotation(T.topLeftCorner<3, 3>()), T.topRightCorner<3, 1>()};
+  std::vector<PointPair> points;
+  points.reserve(pairs.size());
+  for (const Pair& pair : pairs) points.push_back({pair.reference.translation, pair.estimate.translation});
+  return align_rigid(points).T_a_b;
 }
 
 double nees(const Pair& pair) {
