@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// camloc-map export: a map for other programs to look at.
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <span>
+
+#include "core/map/replace_file.h"
+#include "tools/camloc-map/commands.h"
+#include "tools/camloc-map/map_export.h"
+#include "tools/common/output_path.h"
+
+namespace camloc::map_tool {
+namespace {
+
+constexpr const char* kFooter =
+    "At least one of --ply, --colmap, --tum. The PLY opens in CloudCompare, MeshLab and Open3D, the COLMAP folder with\n"
+    "'colmap gui --import_path DIR' (set the minimum track length to 1 there), the trajectory with evo.\n"
+    "Example: camloc map export kitchen.cmap --ply kitchen.ply --tum keyframes.txt\n"
+    "Exit code: 0 done, 1 failed, 2 wrong usage or configuration.";
+
+struct ExportArguments {
+  std::string map_path, ply_path, colmap_folder, tum_path;
+  ExportOptions options;
+};
+
+Status check_outputs(const ExportArguments& arguments) {
+  if (arguments.ply_path.empty() && arguments.colmap_folder.empty() && arguments.tum_path.empty()) {
+    return {ErrorCode::kInvalid, "nothing to write; give --ply FILE, --colmap DIR or --tum FILE"};
+  }
+  for (const auto& [option, path] : {std::pair("--ply", &arguments.ply_path), std::pair("--tum", &arguments.tum_path)}) {
+    if (path->empty()) continue;
+    if (const Status output = tools::check_output_path(option, *path); !output.is_ok()) return output;
+  }
+  return Status::ok();
+}
+
+Status write_text(const std::string& path, const std::string& text) { return replace_file(path, std::as_bytes(std::span(text))); }
+
+Status write_exports(const MapView& map, const ExportArguments& arguments) {
+  const ExportOptions& options = arguments.options;
+  const auto count = [](std::size_t n) { return static_cast<unsigned long long>(n); };
+  if (!arguments.ply_path.empty()) {
+    if (const Status written = write_text(arguments.ply_path, format_ply(map, options)); !written.is_ok()) return written;
+    std::printf("%s: %llu landmarks\n", arguments.ply_path.c_str(), count(map.landmarks().size()));
+  }
+  if (!arguments.colmap_folder.empty()) {
+    const ColmapModel model = make_colmap_model(map, options);
+    if (const Status written = write_colmap_model(model, arguments.colmap_folder, describe_export(map, options)); !written.is_ok()) return written;
+    std::size_t num_observations = 0;
+    for (const ColmapImage& image : model.images) num_observations += image.observations.size();
+    std::printf("%s: %llu images, %llu points, %llu observations\n", arguments.colmap_folder.c_str(), count(model.images.size()),
+                count(model.points.size()), count(num_observations));
+  }
+  if (!arguments.tum_path.empty()) {
+    if (const Status written = write_text(arguments.tum_path, format_tum(map, options)); !written.is_ok()) return written;
+    std::printf("%s: %llu keyframes\n", arguments.tum_path.c_str(), count(map.keyframes().size()));
+  }
+  return std::fflush(stdout) == 0 ? Status::ok() : Status(ErrorCode::kIo, "cannot write to standard output");
+}
+
+int run(const ExportArguments& arguments) {
+  if (const Status outputs = check_outputs(arguments); !outputs.is_ok()) return report_error(outputs, 2);
+  const auto map = MapView::open(arguments.map_path);
+  if (!map.is_ok()) return report_error(map.status(), 1);
+  if (const Status possible = check_export(map.value(), arguments.options); !possible.is_ok()) return report_error(possible, 2);
+  const Status written = write_exports(map.value(), arguments);
+  if (!written.is_ok()) return report_error(written, written.code() == ErrorCode::kInvalid ? 2 : 1);
+  return 0;
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<ExportArguments>();
+  CLI::App* command = app.add_subcommand("export", "Writes a map as point cloud, COLMAP model or trajectory, for other viewers.");
+  command->footer(kFooter);
+  command->add_option("MAP", arguments->map_path, "Map file (.cmap)")->required();
+  command->add_option("--ply", arguments->ply_path, "Landmarks as a binary PLY point cloud");
+  command->add_option("--colmap", arguments->colmap_folder, "Folder for a COLMAP text model: keyframes as images, landmarks as points");
+  command->add_option("--tum", arguments->tum_path, "Keyframes as a trajectory in TUM format, one a second");
+  command->add_flag("--wcs", arguments->options.use_wcs, "Write coordinates of the site; the map needs a datum");
+  const std::map<std::string, PointColoring> colorings{{"height", PointColoring::kHeight}, {"observations", PointColoring::kObservations}};
+  command->add_option("--color", arguments->options.coloring, "What the colour of a landmark stands for (default height)")
+      ->transform(CLI::CheckedTransformer(colorings));
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace camloc::map_tool

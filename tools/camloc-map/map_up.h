@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Which way is up in a map: what pictures and colours by height need to know.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/map/map_view.h"
+
+namespace camloc::map_tool {
+
+/// Unit vector in `map`. The z axis of the site where the map has a datum; else the axis of `map` along which landmarks (1st to
+/// 99th percentile) and keyframes extend least, which is what `camloc localize` draws along, too, pointing to the side to which the
+/// keyframes' image tops point on average.
+[[nodiscard]] Eigen::Vector3d up_axis(const MapView& map);
+
+/// All landmarks of a map, metres in `map`.
+[[nodiscard]] std::vector<Eigen::Vector3d> landmark_positions(const MapView& map);
+
+}  // namespace camloc::map_tool
