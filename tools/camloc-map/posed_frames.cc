@@ -3,10 +3,12 @@
 #include "tools/camloc-map/posed_frames.h"
 
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "drivers/frame_selection.h"
 #include "drivers/sequence.h"
+#include "tools/camloc-map/colmap_poses.h"
 
 namespace camloc::map_tool {
 namespace {
@@ -25,9 +27,22 @@ Result<std::string> folder_of(const std::string& url) {
   return rest;
 }
 
-Result<std::vector<std::optional<Rigid3>>> recorded_poses(const std::string& poses, const Sequence& sequence) {
-  if (poses == "embedded") return read_embedded_poses(sequence);
-  const auto trajectory = read_tum_trajectory(poses);
+constexpr std::string_view kColmapScheme = "colmap:";
+
+/// Per frame of the recording; sets `scale` where the poses had to be scaled.
+Result<std::vector<std::optional<Rigid3>>> recorded_poses(const PosedFramesRequest& request, const Sequence& sequence,
+                                                          const RgbdCamera& camera, std::optional<ModelScale>* scale) {
+  if (request.poses == "embedded") return read_embedded_poses(sequence);
+  if (request.poses.starts_with(kColmapScheme)) {
+    if (request.pose_camera == PoseCamera::kDepth) {
+      return {ErrorCode::kInvalid, "--poses-of depth: a COLMAP model has the poses of colour images; leave it out"};
+    }
+    auto poses = read_colmap_poses(request.poses.substr(kColmapScheme.size()), sequence, camera);
+    if (!poses.is_ok()) return poses.status();
+    *scale = poses.value().scale;
+    return std::move(poses.value().T_map_camera);
+  }
+  const auto trajectory = read_tum_trajectory(request.poses);
   if (!trajectory.is_ok()) return trajectory.status();
   std::vector<std::optional<Rigid3>> result;
   for (const SequenceFrame& frame : sequence.frames) result.push_back(pose_at(trajectory.value(), frame.stamp_ns));
@@ -59,14 +74,14 @@ Result<PosedFrames> find_posed_frames(const PosedFramesRequest& request, const R
   if (!sequence.is_ok()) return sequence.status();
   const auto selected = select_frames(request.include, request.exclude, sequence.value().frames.size());
   if (!selected.is_ok()) return selected.status();
-  const auto poses = recorded_poses(request.poses, sequence.value());
+  PosedFrames result;
+  const auto poses = recorded_poses(request, sequence.value(), camera, &result.scale);
   if (!poses.is_ok()) return poses.status();
 
   const bool are_embedded = request.poses == "embedded";
   const bool are_of_depth = request.pose_camera == PoseCamera::kDepth ||
                             (request.pose_camera == PoseCamera::kAuto && are_embedded && camera.poses_are_of_depth_camera);
   const Rigid3 T_recorded_color = are_of_depth ? camera.T_color_depth.inverse() : Rigid3{};
-  PosedFrames result;
   result.folder = folder.value();
   result.num_recorded = sequence.value().frames.size();
   result.num_selected = selected.value().size();

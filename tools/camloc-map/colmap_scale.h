@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// How many metres a unit of a structure-from-motion model is: images alone do not tell, the depth that was recorded with
+// them does.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/result.h"
+
+namespace camloc::map_tool {
+
+/// A point of the model as one image sees it.
+struct DepthPair {
+  std::uint32_t image = 0;      ///< which; numbers are only compared
+  double model_depth = 0;       ///< along the optical axis, units of the model, > 0
+  double measured_depth_m = 0;  ///< by the depth camera at the same pixel, > 0
+};
+
+struct ModelScale {
+  double metres_per_unit = 1;
+  double spread = 0;            ///< of single ratios, one robust standard deviation, relative
+  double image_spread = 0;      ///< the same of the images' medians: drift of scale within the model
+  std::uint64_t num_pairs = 0, num_images = 0;
+};
+
+struct ModelScaleOptions {
+  std::uint64_t min_pairs = 50;
+  std::uint64_t min_images = 2;
+  std::uint64_t min_pairs_per_image = 5;  ///< an image's median needs that many
+  double max_spread = 0.15;     ///< points of a structure-from-motion model scatter 1-5 % at room distances
+  double max_image_spread = 0.05;
+};
+
+/// Median of measured / model depth. The spreads are 1.4826 times the median absolute deviation of the logarithm of the ratio.
+/// kInvalid, naming the numbers: too few pairs, or spreads above the limits, as with poses, images or a depth that do not
+/// belong together.
+[[nodiscard]] Result<ModelScale> estimate_model_scale(std::span<const DepthPair> pairs, const ModelScaleOptions& options = {});
+
+}  // namespace camloc::map_tool
