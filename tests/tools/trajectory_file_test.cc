@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Trajectories survive being written and read; damaged ones are named with their line.
-#include "tools/camloc/trajectory_file.h"
+#include "tools/common/trajectory_file.h"
 
 #include "tests/tools/command_runner.h"
 

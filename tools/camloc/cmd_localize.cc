@@ -9,7 +9,7 @@
 
 #include "tools/camloc/commands.h"
 #include "tools/camloc/sequence_run.h"
-#include "tools/camloc/trajectory_file.h"
+#include "tools/common/trajectory_file.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/output_path.h"
 #include "tools/common/progress_line.h"

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/camloc/trajectory_file.h"
+#include "tools/common/trajectory_file.h"
 
 namespace camloc::tools {
 

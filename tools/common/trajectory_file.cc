@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc/trajectory_file.h"
+#include "tools/common/trajectory_file.h"
 
 #include <cmath>
 #include <cstdio>

@@ -17,7 +17,6 @@
 #include "core/base/result.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
-#include "core/localize/localization.h"
 
 namespace camloc::tools {
 
