@@ -31,11 +31,6 @@ std::array<std::int64_t, 3> voxel_of(const Eigen::Vector3d& p) {
           static_cast<std::int64_t>(std::floor(p.z() / kVoxelM))};
 }
 
-Eigen::Vector3d point_camera(const ViewFeatures& view, std::size_t feature) {
-  const double z = view.depth_m[feature];
-  return {z * view.normalized[feature].x(), z * view.normalized[feature].y(), z};
-}
-
 int distance_to_any(const std::vector<Descriptor>& appearances, const Descriptor& descriptor) {
   int best = 257;
   for (const Descriptor& a : appearances) best = std::min(best, hamming_distance(a, descriptor));
@@ -111,7 +106,7 @@ FusionCounts LandmarkFusion::add_view(const ViewFeatures& view) {
 void LandmarkFusion::gather_candidates(const ViewFeatures& view) {
   std::vector<std::array<std::int64_t, 3>> occupied;
   for (std::size_t i = 0; i < landmark_of_feature_.size(); ++i) {
-    if (view.depth_m[i] > 0) occupied.push_back(voxel_of(view.T_map_camera * point_camera(view, i)));
+    if (view.depth_m[i] > 0) occupied.push_back(voxel_of(view.T_map_camera * view.point_camera(i)));
   }
   std::sort(occupied.begin(), occupied.end());
   occupied.erase(std::unique(occupied.begin(), occupied.end()), occupied.end());
@@ -226,7 +221,7 @@ std::uint8_t LandmarkFusion::cell_of(const Keypoint& keypoint) const {
 std::uint32_t LandmarkFusion::create(const ViewFeatures& view, std::size_t feature) {
   const auto index = static_cast<std::uint32_t>(landmarks_.size());
   Fused& landmark = landmarks_.emplace_back();
-  landmark.origin_m = landmark.position_m = view.T_map_camera * point_camera(view, feature);
+  landmark.origin_m = landmark.position_m = view.T_map_camera * view.point_camera(feature);
   landmark.min_reference_m = landmark.max_reference_m = reference_m(view, feature);
   const auto v = voxel_of(landmark.origin_m);
   voxels_[voxel_key(v[0], v[1], v[2])].push_back(index);
@@ -238,7 +233,7 @@ std::uint32_t LandmarkFusion::create(const ViewFeatures& view, std::size_t featu
 void LandmarkFusion::observe(const ViewFeatures& view, std::size_t feature, std::uint32_t index) {
   Fused& landmark = landmarks_[index];
   const Keypoint& keypoint = view.features.keypoints[feature];
-  const Eigen::Vector3d p_camera = point_camera(view, feature), p_map = view.T_map_camera * p_camera;
+  const Eigen::Vector3d p_camera = view.point_camera(feature), p_map = view.T_map_camera * p_camera;
   const double z = p_camera.z(), lateral = z * scale_[keypoint.level] / color_.mean_focal_px(), sigma_z = depth_noise_.sigma_m(z);
   const Eigen::Vector3d ray = p_camera / z;
   Eigen::Matrix3d covariance = sigma_z * sigma_z * ray * ray.transpose();

@@ -18,17 +18,9 @@
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
 #include "core/map/map_data.h"
+#include "core/map/view_features.h"
 
 namespace camloc {
-
-/// Features of one posed view. All vectors have the same length.
-struct ViewFeatures {
-  Rigid3 T_map_camera;
-  std::int64_t stamp_ns = 0;
-  Features features;
-  std::vector<Eigen::Vector2f> normalized;  ///< undistorted image coordinates x/z, y/z
-  std::vector<float> depth_m;               ///< along the optical axis, 0 = none
-};
 
 struct FusionOptions {
   double radius_px = 4.0;         ///< of level 0; grows with the feature's level

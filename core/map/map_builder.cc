@@ -6,7 +6,6 @@
 #include <cmath>
 #include <string>
 
-#include "core/geometry/depth_registration.h"
 #include "core/map/keyframe_cover.h"
 #include "core/map/landmark_budget.h"
 #include "core/map/landmark_fusion.h"
@@ -23,8 +22,6 @@ constexpr std::uint32_t kMaxKeyframeGain = 200;
 // What a landmark costs in the file: its record, one descriptor, its share of words and lists.
 constexpr double kRecordBytes = 16, kDescriptorBytes = 32, kListEntryBytes = 1.2, kInvertedEntryBytes = 3, kKeyframeBytes = 40,
                  kFixedBytes = 2048, kMinWordBytes = 64 * 36;
-
-std::string size_text(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
 
 FusionOptions fusion_options(const MapBuildOptions& options) {
   FusionOptions fusion;
@@ -50,14 +47,10 @@ struct MapBuilder::Impl {
   Impl(const RgbdCamera& rgbd_camera, const MapBuildOptions& build_options)
       : camera(rgbd_camera),
         options(build_options),
-        extractor(camera.color.width, camera.color.height, options.orb),
-        rays(camera.color),
-        depth_lookup(camera),
+        extractor(camera, options.orb),
         fusion(camera.color, camera.depth_noise, fusion_options(options)),
         consistency(camera, consistency_options(options)) {}
 
-  [[nodiscard]] Status check(const Frame& frame, const Rigid3& T_map_camera) const;
-  [[nodiscard]] ViewFeatures view_features(const Frame& frame, const Rigid3& T_map_camera);
   [[nodiscard]] std::vector<std::uint32_t> useful_landmarks(std::uint32_t max_landmarks) const;
   [[nodiscard]] MapData select(const std::vector<std::uint32_t>& kept, std::uint32_t min_gain);
   void choose_keyframes(const std::vector<std::uint32_t>& kept, std::uint32_t min_gain, MapData* map);
@@ -67,9 +60,7 @@ struct MapBuilder::Impl {
 
   RgbdCamera camera;
   MapBuildOptions options;
-  OrbExtractor extractor;
-  UndistortionTable rays;
-  DepthLookup depth_lookup;
+  ViewExtractor extractor;
   LandmarkFusion fusion;
   PoseConsistency consistency;
   MapBuildReport report;
@@ -83,15 +74,23 @@ MapBuilder::MapBuilder(const RgbdCamera& camera, const MapBuildOptions& options)
 MapBuilder::~MapBuilder() = default;
 
 Status MapBuilder::add_frame(const Frame& frame, const Rigid3& T_map_camera) {
-  if (const Status status = impl_->check(frame, T_map_camera); !status.is_ok()) {
+  Status status = impl_->extractor.check(frame);
+  if (status.is_ok() && !(T_map_camera.translation.allFinite() && T_map_camera.rotation.coeffs().allFinite()))
+    status = {ErrorCode::kInvalid, "frame " + std::to_string(frame.sequence) + ": pose is not finite"};
+  if (!status.is_ok()) {
     ++impl_->report.num_frames_skipped;
     return status;
   }
-  const ViewFeatures view = impl_->view_features(frame, T_map_camera);
+  ViewFeatures view = impl_->extractor.extract(frame);
+  view.T_map_camera = T_map_camera;
+  add_view(view);
+  return Status::ok();
+}
+
+void MapBuilder::add_view(const ViewFeatures& view) {
   impl_->fusion.add_view(view);
   impl_->consistency.add_view(view);
   ++impl_->report.num_frames;
-  return Status::ok();
 }
 
 MapBuildReport MapBuilder::progress() const {
@@ -99,36 +98,6 @@ MapBuildReport MapBuilder::progress() const {
   report.num_observations = impl_->fusion.num_observations();
   report.num_landmarks_before = static_cast<std::uint32_t>(impl_->fusion.num_landmarks());
   return report;
-}
-
-Status MapBuilder::Impl::check(const Frame& frame, const Rigid3& T_map_camera) const {
-  const std::string what = "frame " + std::to_string(frame.sequence);
-  if (frame.gray.width != camera.color.width || frame.gray.height != camera.color.height || frame.gray.empty()) {
-    return {ErrorCode::kInvalid, what + ": colour image is " + size_text(frame.gray.width, frame.gray.height) + " but camera '" +
-                                     camera.name + "' has " + size_text(camera.color.width, camera.color.height)};
-  }
-  if (frame.depth.empty()) return {ErrorCode::kInvalid, what + ": no depth image"};
-  if (frame.depth.width != camera.depth.width || frame.depth.height != camera.depth.height) {
-    return {ErrorCode::kInvalid, what + ": depth image is " + size_text(frame.depth.width, frame.depth.height) + " but camera '" +
-                                     camera.name + "' has " + size_text(camera.depth.width, camera.depth.height)};
-  }
-  if (!T_map_camera.translation.allFinite() || !T_map_camera.rotation.coeffs().allFinite())
-    return {ErrorCode::kInvalid, what + ": pose is not finite"};
-  return Status::ok();
-}
-
-ViewFeatures MapBuilder::Impl::view_features(const Frame& frame, const Rigid3& T_map_camera) {
-  ViewFeatures view;
-  view.T_map_camera = T_map_camera;
-  view.stamp_ns = frame.stamp_ns;
-  view.features = extractor.extract(frame.gray);
-  view.normalized.reserve(view.features.size());
-  view.depth_m.reserve(view.features.size());
-  for (const Keypoint& keypoint : view.features.keypoints) {
-    view.normalized.push_back(rays.undistort(keypoint.u, keypoint.v));
-    view.depth_m.push_back(depth_lookup.depth_at(frame.depth, keypoint.u, keypoint.v));
-  }
-  return view;
 }
 
 std::vector<std::uint32_t> MapBuilder::Impl::useful_landmarks(std::uint32_t max_landmarks) const {

@@ -14,6 +14,7 @@
 #include "core/features/orb_extractor.h"
 #include "core/geometry/camera.h"
 #include "core/map/map_data.h"
+#include "core/map/view_features.h"
 
 namespace camloc {
 
@@ -49,6 +50,8 @@ class MapBuilder {
   /// One view with its given pose. kInvalid when an image size does not fit the camera or the pose is not finite: the
   /// frame is skipped and counted, the builder goes on. A frame without depth is skipped, too.
   [[nodiscard]] Status add_frame(const Frame& frame, const Rigid3& T_map_camera);
+  /// The same for a view whose features were extracted before (ViewExtractor, with the options' OrbOptions), pose included.
+  void add_view(const ViewFeatures& view);
   /// Counts so far (frames, observations, landmarks before pruning), for a progress display.
   [[nodiscard]] MapBuildReport progress() const;
   /// Fuses, covers, prunes to the budget, trains the words. kInvalid when no landmark is left.
