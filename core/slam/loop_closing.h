@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Has this place been seen before? Words propose, geometry verifies, and a second opinion is asked for wherever the answer
+// would move the map by more than the drift explains: buildings repeat themselves, and one false loop ruins a map. A loop is
+// closed when
+//   - many landmarks of the old place fit the view, with pixels and with depth, spread over the image;
+//   - no other place explains the view nearly as well (a look-alike would);
+//   - the correction it asks for is possible for the path walked since then (same segment);
+//   - the keyframes that follow agree on it, unless the correction is within what the drift explains anyway;
+//   - the pose graph with it stretches no link between neighbours beyond what their own measurements allow.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/slam/landmark_set.h"
+#include "core/slam/place_index.h"
+#include "core/slam/pose_graph.h"
+#include "core/slam/slam_map.h"
+#include "core/slam/view_registration.h"
+
+namespace camloc {
+
+struct LoopOptions {
+  std::size_t num_candidates = 8;        ///< places asked for geometry
+  std::size_t keyframes_per_place = 6;
+  std::size_t max_place_landmarks = 3500;
+  std::uint32_t max_shared = 20;         ///< a keyframe with more common landmarks is a neighbour, no loop
+  int min_inliers = 40;
+  double min_inlier_ratio = 0.4, min_depth_agreement = 0.7, min_spread = 0.15;
+  double max_rival_share = 0.6;          ///< inliers of another place, as a share of the best
+  double rival_distance_m = 0.5, rival_angle_rad = 0.35;   ///< another place lies at least this far from the best
+  // How far dead reckoning may be off after walking some way.
+  double drift_m = 0.05, drift_per_m = 0.02;
+  double drift_rad = 0.03, drift_rad_per_m = 0.004;
+  int num_confirmations = 3;             ///< keyframes that must agree where the drift does not explain the correction
+  int num_confirmations_between_segments = 4;
+  double agreement_m = 0.10, agreement_rad = 0.04;
+  double max_chi2 = 60;                  ///< of any link of the pose graph, 6 degrees of freedom
+};
+
+/// An old place as a keyframe of now saw it.
+struct LoopMatch {
+  std::uint32_t keyframe = 0, place = 0;
+  Rigid3 T_place_keyframe;
+  Matrix6d covariance = Matrix6d::Identity();   ///< of pose_error(), axes of `place`
+  Rigid3 T_correction;    ///< moves the map of now onto the map of then
+  Registration registration;
+};
+
+struct LoopReport {
+  bool is_closed = false, is_joined = false;   ///< a loop in its segment; two segments became one
+  bool is_refused = false;                     ///< verified, but against drift, rivals or the pose graph
+  std::uint32_t place = 0;
+  double correction_m = 0, correction_rad = 0;
+};
+
+class LoopCloser {
+ public:
+  LoopCloser(const LoopOptions& options, SlamMap* map, ViewRegistration* registration);
+  /// The newest keyframe, already in the map. `places` holds all keyframes before it.
+  LoopReport consider(std::uint32_t keyframe, const PlaceIndex& places);
+  [[nodiscard]] std::uint32_t num_closed() const { return static_cast<std::uint32_t>(edges_.size()); }
+
+ private:
+  [[nodiscard]] std::optional<LoopMatch> find(std::uint32_t keyframe, const PlaceIndex& places);
+  [[nodiscard]] Registration register_to_place(std::uint32_t keyframe, std::uint32_t place, std::uint64_t seed);
+  [[nodiscard]] bool is_convincing(const Registration& found) const;
+  [[nodiscard]] double path_m(std::uint32_t from, std::uint32_t to) const;
+  [[nodiscard]] double drift_ratio(const LoopMatch& match) const;
+  [[nodiscard]] bool agrees(const LoopMatch& a, const LoopMatch& b) const;
+  [[nodiscard]] bool spread_error(const std::vector<LoopMatch>& matches);
+  void move_to(const std::vector<Rigid3>& T_map_keyframe);
+  void fuse(const std::vector<LoopMatch>& matches);
+
+  LoopOptions options_;
+  SlamMap* map_;
+  ViewRegistration* registration_;
+  LandmarkSet place_landmarks_;
+  std::vector<LoopMatch> pending_;
+  std::vector<PoseGraphEdge> edges_;   ///< of all loops closed so far
+};
+
+}  // namespace camloc

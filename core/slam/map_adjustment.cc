@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/slam/map_adjustment.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace camloc {
+namespace {
+
+constexpr std::uint32_t kAbsent = 0xFFFFFFFF;
+
+/// A bundle problem and which part of the map each of its unknowns is.
+struct Extract {
+  BundleProblem problem;
+  std::vector<std::uint32_t> keyframes, landmarks;   ///< index in the map of each camera and landmark
+  std::vector<std::uint32_t> camera_of_keyframe;     ///< kAbsent where it takes no part
+};
+
+void add_camera(const SlamMap& map, std::uint32_t keyframe, bool is_fixed, Extract* extract) {
+  extract->camera_of_keyframe[keyframe] = static_cast<std::uint32_t>(extract->keyframes.size());
+  extract->keyframes.push_back(keyframe);
+  extract->problem.T_map_camera.push_back(map.keyframe(keyframe).view.T_map_camera);
+  extract->problem.is_camera_fixed.push_back(is_fixed ? 1 : 0);
+}
+
+// A landmark with all its sightings by cameras of the problem.
+void add_landmark(const SlamMap& map, std::uint32_t index, Extract* extract) {
+  const SlamLandmark& landmark = map.landmark(index);
+  const auto number = static_cast<std::uint32_t>(extract->landmarks.size());
+  extract->landmarks.push_back(index);
+  extract->problem.landmarks_m.push_back(landmark.position_m);
+  for (const Sighting& s : landmark.sightings) {
+    const std::uint32_t camera = extract->camera_of_keyframe[s.keyframe];
+    if (camera == kAbsent) continue;
+    const ViewFeatures& view = map.keyframe(s.keyframe).view;
+    extract->problem.observations.push_back({camera, number, view.normalized[s.feature].x(), view.normalized[s.feature].y(),
+                                             view.depth_m[s.feature], map.scale_of_level(view.features.keypoints[s.feature].level)});
+  }
+}
+
+std::uint32_t first_of_segment(const SlamMap& map, std::uint32_t segment) {
+  for (std::uint32_t k = 0; k < map.keyframes().size(); ++k) {
+    if (map.keyframe(k).segment == segment) return k;
+  }
+  return kAbsent;
+}
+
+Extract extract_window(const LocalAdjustmentOptions& options, std::uint32_t keyframe, const SlamMap& map) {
+  Extract extract;
+  extract.camera_of_keyframe.assign(map.keyframes().size(), kAbsent);
+  const std::uint32_t first = first_of_segment(map, map.keyframe(keyframe).segment);
+  add_camera(map, keyframe, keyframe == first, &extract);
+  for (const CovisibleKeyframe& c : map.covisible(keyframe, options.min_shared)) {
+    if (extract.keyframes.size() >= options.num_free_keyframes) break;
+    add_camera(map, c.keyframe, c.keyframe == first, &extract);
+  }
+  std::vector<std::uint8_t> is_in(map.landmarks().size(), 0);
+  std::vector<std::uint32_t> landmarks, num_seen(map.keyframes().size(), 0);
+  for (const std::uint32_t k : std::vector(extract.keyframes)) {
+    for (const std::int32_t index : map.keyframe(k).landmark_of_feature) {
+      if (index == kNoLandmark || is_in[static_cast<std::size_t>(index)] != 0) continue;
+      const SlamLandmark& landmark = map.landmark(static_cast<std::uint32_t>(index));
+      if (landmark.sightings.size() < 2) continue;
+      is_in[static_cast<std::size_t>(index)] = 1;
+      landmarks.push_back(static_cast<std::uint32_t>(index));
+      for (const Sighting& s : landmark.sightings) ++num_seen[s.keyframe];
+    }
+  }
+  std::vector<std::uint32_t> outside;
+  for (std::uint32_t k = 0; k < num_seen.size(); ++k) {
+    if (num_seen[k] > 0 && extract.camera_of_keyframe[k] == kAbsent) outside.push_back(k);
+  }
+  std::stable_sort(outside.begin(), outside.end(), [&](std::uint32_t a, std::uint32_t b) { return num_seen[a] > num_seen[b]; });
+  if (outside.size() > options.num_fixed_keyframes) outside.resize(options.num_fixed_keyframes);
+  for (const std::uint32_t k : outside) add_camera(map, k, true, &extract);
+  for (const std::uint32_t index : landmarks) add_landmark(map, index, &extract);
+  auto& fixed = extract.problem.is_camera_fixed;
+  if (std::find(fixed.begin(), fixed.end(), 1) == fixed.end()) fixed[static_cast<std::size_t>(
+      std::min_element(extract.keyframes.begin(), extract.keyframes.end()) - extract.keyframes.begin())] = 1;
+  return extract;
+}
+
+Extract extract_segment(std::uint32_t segment, const SlamMap& map) {
+  Extract extract;
+  extract.camera_of_keyframe.assign(map.keyframes().size(), kAbsent);
+  for (std::uint32_t k = 0; k < map.keyframes().size(); ++k) {
+    if (map.keyframe(k).segment == segment) add_camera(map, k, extract.keyframes.empty(), &extract);
+  }
+  for (std::uint32_t i = 0; i < map.landmarks().size(); ++i) {
+    const SlamLandmark& landmark = map.landmark(i);
+    if (landmark.sightings.size() >= 2 && map.keyframe(landmark.sightings.front().keyframe).segment == segment)
+      add_landmark(map, i, &extract);
+  }
+  return extract;
+}
+
+// Poses and landmarks back into the map. A landmark with a single sighting stays where its keyframe sees it.
+void write_back(const Extract& extract, SlamMap* map) {
+  for (std::size_t c = 0; c < extract.keyframes.size(); ++c) {
+    if (extract.problem.is_camera_fixed[c] != 0) continue;
+    SlamKeyframe& keyframe = map->keyframe(extract.keyframes[c]);
+    const Rigid3 T_new_old = extract.problem.T_map_camera[c] * keyframe.view.T_map_camera.inverse();
+    keyframe.view.T_map_camera = extract.problem.T_map_camera[c];
+    for (const std::int32_t index : keyframe.landmark_of_feature) {
+      if (index == kNoLandmark) continue;
+      SlamLandmark& landmark = map->landmark(static_cast<std::uint32_t>(index));
+      if (landmark.sightings.size() == 1) landmark.position_m = T_new_old * landmark.position_m;
+    }
+  }
+  for (std::size_t i = 0; i < extract.landmarks.size(); ++i) map->landmark(extract.landmarks[i]).position_m = extract.problem.landmarks_m[i];
+}
+
+// Takes sightings that do not fit out of the map; the observations of the extract are left as they are.
+std::uint64_t remove_outliers(const BundleOptions& bundle, const Extract& extract, double max_pixel_sigmas, SlamMap* map) {
+  const std::vector<BundleResidual> residuals = bundle_residuals(bundle, extract.problem);
+  std::uint64_t num_removed = 0;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (residuals[i].pixel_sigmas <= max_pixel_sigmas) continue;
+    const BundleObservation& o = extract.problem.observations[i];
+    map->remove_sighting(extract.landmarks[o.landmark], extract.keyframes[o.camera]);
+    ++num_removed;
+  }
+  return num_removed;
+}
+
+double quantile(std::vector<double>* values, double share) {
+  if (values->empty()) return 0;
+  const auto at = values->begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values->size() - 1));
+  std::nth_element(values->begin(), at, values->end());
+  return *at;
+}
+
+MapFit measure_fit(const BundleOptions& bundle, const Extract& extract) {
+  MapFit fit;
+  std::vector<double> pixels, sigmas, metres;
+  const std::vector<BundleResidual> residuals = bundle_residuals(bundle, extract.problem);
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    const BundleObservation& o = extract.problem.observations[i];
+    pixels.push_back(static_cast<double>(residuals[i].pixel_sigmas) * o.sigma_px);
+    if (o.depth_m <= 0) continue;
+    sigmas.push_back(std::abs(static_cast<double>(residuals[i].depth_sigmas)));
+    metres.push_back(sigmas.back() * bundle.depth_noise.sigma_m(o.depth_m));
+  }
+  fit.num_sightings = residuals.size();
+  fit.median_px = quantile(&pixels, 0.5);
+  fit.p90_px = quantile(&pixels, 0.9);
+  fit.median_depth_sigmas = quantile(&sigmas, 0.5);
+  fit.median_depth_m = quantile(&metres, 0.5);
+  return fit;
+}
+
+// Priors name landmarks of the map; the problem needs its own numbers, and no fixed camera where they pin the gauge.
+void add_priors(std::span<const PointPrior> priors, Extract* extract) {
+  extract->problem.priors.clear();
+  for (const PointPrior& prior : priors) {
+    const auto place = std::lower_bound(extract->landmarks.begin(), extract->landmarks.end(), prior.landmark);
+    if (place == extract->landmarks.end() || *place != prior.landmark) continue;
+    PointPrior& added = extract->problem.priors.emplace_back(prior);
+    added.landmark = static_cast<std::uint32_t>(place - extract->landmarks.begin());
+  }
+  if (extract->problem.priors.size() >= 3) extract->problem.is_camera_fixed.assign(extract->keyframes.size(), 0);
+}
+
+}  // namespace
+
+BundleReport adjust_locally(const BundleOptions& bundle, const LocalAdjustmentOptions& options, std::uint32_t keyframe, SlamMap* map) {
+  Extract extract = extract_window(options, keyframe, *map);
+  BundleOptions local = bundle;
+  local.max_iterations = options.max_iterations;
+  local.min_relative_decrease = 1e-3;
+  const BundleReport report = adjust_bundle(local, &extract.problem);
+  write_back(extract, map);
+  remove_outliers(local, extract, options.max_pixel_sigmas, map);
+  for (const std::uint32_t index : extract.landmarks) map->summarize(index);
+  return report;
+}
+
+MapFit adjust_globally(const BundleOptions& bundle, std::uint32_t segment, std::span<const PointPrior> priors, double max_pixel_sigmas,
+                       SlamMap* map, const BundleCallback& on_iteration) {
+  std::uint64_t num_removed = 0;
+  MapFit fit;
+  for (int round = 0; round < 2; ++round) {
+    Extract extract = extract_segment(segment, *map);
+    add_priors(priors, &extract);
+    const BundleReport report = adjust_bundle(bundle, &extract.problem, on_iteration);
+    write_back(extract, map);
+    fit = measure_fit(bundle, extract);
+    if (report.is_stopped) break;
+    num_removed += remove_outliers(bundle, extract, max_pixel_sigmas, map);
+  }
+  fit.num_removed = num_removed;
+  for (std::uint32_t i = 0; i < map->landmarks().size(); ++i) map->summarize(i);
+  return fit;
+}
+
+}  // namespace camloc

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Bundle adjustment on the SLAM map: a window around a keyframe while the recording is processed, everything at the end.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/slam/bundle_adjustment.h"
+#include "core/slam/slam_map.h"
+
+namespace camloc {
+
+struct LocalAdjustmentOptions {
+  std::size_t num_free_keyframes = 8;
+  std::size_t num_fixed_keyframes = 16;
+  std::uint32_t min_shared = 15;   ///< landmarks that make a keyframe a neighbour
+  int max_iterations = 5;
+  double max_pixel_sigmas = 3.5;   ///< sightings farther off afterwards are removed
+};
+
+/// Adjusts the keyframe, its best neighbours and what they see; other keyframes that see it hold it in place. The first
+/// keyframe of the segment never moves.
+BundleReport adjust_locally(const BundleOptions& bundle, const LocalAdjustmentOptions& options, std::uint32_t keyframe, SlamMap* map);
+
+struct MapFit {
+  std::uint64_t num_sightings = 0, num_removed = 0;
+  double median_px = 0, p90_px = 0;              ///< reprojection error, pixels of level 0
+  double median_depth_sigmas = 0;                ///< |depth residual|
+  double median_depth_m = 0;
+};
+
+/// Adjusts all keyframes of a segment twice, without the worst sightings the second time. Landmarks listed in `priors` are
+/// held at their positions; with three or more of them the first keyframe moves, too.
+MapFit adjust_globally(const BundleOptions& bundle, std::uint32_t segment, std::span<const PointPrior> priors, double max_pixel_sigmas,
+                       SlamMap* map, const BundleCallback& on_iteration = {});
+
+}  // namespace camloc

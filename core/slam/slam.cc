@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/slam/slam.h"
+
+#include <algorithm>
+#include <map>
+
+#include "core/geometry/pose_refinement.h"
+#include "core/slam/keyframe_insertion.h"
+
+namespace camloc {
+namespace {
+
+RegistrationOptions registration_options(const SlamOptions& options) {
+  RegistrationOptions registration;
+  registration.use_depth = options.use_depth_in_tracking;
+  registration.max_features = options.max_features;
+  return registration;
+}
+
+}  // namespace
+
+Slam::Slam(const RgbdCamera& camera, const SlamOptions& options)
+    : camera_(camera),
+      options_(options),
+      map_(camera, options.scale_factor, options.num_levels),
+      registration_(camera, options.scale_factor, registration_options(options)),
+      tracker_(options.tracker, &map_, &registration_),
+      loops_(options.loops, &map_, &registration_) {}
+
+ViewReport Slam::add_view(std::uint64_t frame, const ViewFeatures& view) {
+  ViewReport report;
+  ++counts_.num_views;
+  if (map_.keyframes().empty()) {
+    if (!begin_segment(frame, view, &report)) ++counts_.num_lost;
+    return report;
+  }
+  const bool was_lost = num_lost_in_a_row_ > 0;
+  Registration found = tracker_.track(view, frame);
+  if (!found.is_found && was_lost) found = tracker_.find_back(view, places_, frame);
+  if (!found.is_found) {
+    if (num_lost_in_a_row_++ == 0) ++counts_.num_losses;
+    tracker_.forget_motion();
+    if (num_lost_in_a_row_ > options_.max_lost_views && begin_segment(frame, view, &report)) return report;
+    ++counts_.num_lost;
+    return report;
+  }
+  num_lost_in_a_row_ = 0;
+  report.state = ViewState::kTracked;
+  report.is_found_back = was_lost;
+  report.num_inliers = found.num_inliers();
+  tracker_.accept(view.stamp_ns, found.T_map_camera);
+  if (tracker_.wants_keyframe(view, found)) {
+    add_keyframe(frame, view, found, &report);
+  } else {
+    remember(frame, view, found, false);
+  }
+  return report;
+}
+
+bool Slam::begin_segment(std::uint64_t frame, ViewFeatures view, ViewReport* report) {
+  const auto num_with_depth = std::count_if(view.depth_m.begin(), view.depth_m.end(), [](float z) { return z > 0; });
+  if (num_with_depth < static_cast<std::ptrdiff_t>(options_.min_segment_features)) return false;
+  segment_ = counts_.num_segments++;
+  view.T_map_camera = {};
+  num_lost_in_a_row_ = 0;
+  report->state = ViewState::kTracked;
+  report->has_begun_segment = report->is_keyframe = true;
+  const std::uint32_t keyframe = insert_keyframe(frame, segment_, view, {}, &map_);
+  places_.add(view.features.descriptors);
+  tracker_.set_reference(keyframe);
+  tracker_.accept(view.stamp_ns, view.T_map_camera);
+  tracker_.forget_motion();
+  remember(frame, view, {}, true);
+  return true;
+}
+
+void Slam::add_keyframe(std::uint64_t frame, ViewFeatures view, const Registration& tracked, ViewReport* report) {
+  view.T_map_camera = tracked.T_map_camera;
+  report->is_keyframe = true;
+  const std::uint32_t keyframe = insert_keyframe(frame, map_.keyframe(tracker_.reference()).segment, view, tracked.inliers, &map_);
+  fuse_with_neighbours(keyframe, options_.num_fused_neighbours, &registration_, &map_);
+  tracker_.set_reference(keyframe);
+  remember(frame, view, tracked, true);
+  adjust_locally(bundle_options(), options_.local_adjustment, keyframe, &map_);
+  if (options_.close_loops) {
+    report->loop = loops_.consider(keyframe, places_);
+    if (report->loop.is_closed) {
+      ++counts_.num_loops;
+      adjust_locally(bundle_options(), options_.local_adjustment, keyframe, &map_);
+    }
+    if (report->loop.is_joined) ++counts_.num_joined;
+    if (report->loop.is_refused) ++counts_.num_loops_refused;
+  }
+  places_.add(view.features.descriptors);
+  tracker_.refresh();
+}
+
+void Slam::remember(std::uint64_t frame, const ViewFeatures& view, const Registration& tracked, bool is_keyframe) {
+  TrackedView& kept = tracked_.emplace_back();
+  kept.frame = frame;
+  kept.stamp_ns = view.stamp_ns;
+  kept.reference = tracker_.reference();
+  kept.T_reference_camera = tracker_.T_reference_camera();
+  kept.is_keyframe = is_keyframe;
+  if (is_keyframe) return;
+  kept.seen.reserve(tracked.inliers.size());
+  for (const RegisteredPair& pair : tracked.inliers) {
+    kept.seen.push_back({pair.landmark, view.normalized[pair.feature].x(), view.normalized[pair.feature].y(), view.depth_m[pair.feature],
+                         map_.scale_of_level(view.features.keypoints[pair.feature].level)});
+  }
+}
+
+SlamCounts Slam::counts() const {
+  SlamCounts counts = counts_;
+  counts.num_keyframes = static_cast<std::uint32_t>(map_.keyframes().size());
+  counts.num_landmarks = map_.num_alive_landmarks();
+  return counts;
+}
+
+BundleOptions Slam::bundle_options() const {
+  BundleOptions bundle;
+  bundle.focal_px = camera_.color.mean_focal_px();
+  bundle.depth_noise = camera_.depth_noise;
+  bundle.use_depth = options_.use_depth_in_adjustment;
+  return bundle;
+}
+
+// Keyframes are final; the views between them are refined on the final landmarks.
+Rigid3 Slam::final_pose(const TrackedView& view) const {
+  const Rigid3 T_map_camera = map_.keyframe(view.reference).view.T_map_camera * view.T_reference_camera;
+  if (view.is_keyframe) return T_map_camera;
+  Correspondences pairs(view.seen.size());
+  for (const TrackedView::Seen& seen : view.seen) {
+    const std::int32_t landmark = map_.resolve(seen.landmark);
+    if (landmark == kNoLandmark) continue;
+    const Eigen::Vector3f p = map_.landmark(static_cast<std::uint32_t>(landmark)).position_m.cast<float>();
+    pairs.add(seen.x, seen.y, p.x(), p.y(), p.z(), seen.depth_m, seen.sigma_px, 0, 0, landmark);
+  }
+  PoseRefinementOptions refinement;
+  refinement.depth_noise = camera_.depth_noise;
+  refinement.use_depth = options_.use_depth_in_tracking;
+  const PoseRefinementResult refined = refine_pose(pairs, T_map_camera, camera_.color.mean_focal_px(), refinement, nullptr);
+  const bool is_better = refined.is_converged && refined.num_inliers >= static_cast<int>(view.seen.size()) / 2;
+  return is_better ? refined.T_map_camera : T_map_camera;
+}
+
+SlamResult Slam::finish(const BundleCallback& on_iteration) {
+  SlamResult result;
+  std::map<std::uint32_t, SlamResult::Segment> segments;
+  for (const SlamKeyframe& keyframe : map_.keyframes()) ++segments[keyframe.segment].num_keyframes;
+  for (auto& [id, segment] : segments) {
+    segment.id = id;
+    segment.fit = adjust_globally(bundle_options(), id, {}, options_.max_pixel_sigmas, &map_, on_iteration);
+  }
+  for (const TrackedView& view : tracked_) {
+    SlamPose& pose = result.poses.emplace_back();
+    pose.frame = view.frame;
+    pose.stamp_ns = view.stamp_ns;
+    pose.segment = map_.keyframe(view.reference).segment;
+    pose.T_map_camera = final_pose(view);
+    pose.num_inliers = static_cast<std::uint32_t>(view.seen.size());
+    pose.is_keyframe = view.is_keyframe;
+    ++segments[pose.segment].num_views;
+  }
+  for (const auto& [id, segment] : segments) result.segments.push_back(segment);
+  std::stable_sort(result.segments.begin(), result.segments.end(),
+                   [](const SlamResult::Segment& a, const SlamResult::Segment& b) { return a.num_views > b.num_views; });
+  return result;
+}
+
+}  // namespace camloc

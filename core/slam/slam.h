@@ -1,0 +1,128 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// RGB-D SLAM: where the camera was in every view of a walk, from the views alone. Keyframes, a local bundle adjustment with
+// depth for each of them, loops closed on the way, everything adjusted at the end. Follows the outline of ORB-SLAM2 (Mur-Artal
+// and Tardos, "ORB-SLAM2: an open-source SLAM system for monocular, stereo and RGB-D cameras", 2017), with depth as an
+// observation of its own. One thread, no clock: the same views and options give the same bits.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/slam/loop_closing.h"
+#include "core/slam/map_adjustment.h"
+#include "core/slam/place_index.h"
+#include "core/slam/slam_map.h"
+#include "core/slam/tracker.h"
+#include "core/slam/view_registration.h"
+
+namespace camloc {
+
+struct SlamOptions {
+  float scale_factor = 1.2F;           ///< of the features' pyramid
+  int num_levels = 8;
+  int max_features = 1000;
+  bool use_depth_in_tracking = true;   ///< these two are for comparison: depth wins
+  bool use_depth_in_adjustment = true;
+  bool close_loops = true;
+  TrackerOptions tracker;
+  LocalAdjustmentOptions local_adjustment;
+  LoopOptions loops;
+  std::size_t num_fused_neighbours = 5;
+  int max_lost_views = 10;             ///< after so many in a row a new segment begins
+  std::uint32_t min_segment_features = 200;  ///< features with depth that a view needs to begin one
+  double max_pixel_sigmas = 3.0;       ///< sightings farther off after the final adjustment are removed
+};
+
+enum class ViewState : std::uint8_t { kTracked, kLost };
+
+/// What became of one view.
+struct ViewReport {
+  ViewState state = ViewState::kLost;
+  int num_inliers = 0;
+  bool is_keyframe = false;
+  bool is_found_back = false;          ///< the first one after a loss
+  bool has_begun_segment = false;
+  LoopReport loop;
+};
+
+struct SlamCounts {
+  std::uint32_t num_views = 0, num_lost = 0, num_losses = 0;   ///< views without pose; how often it happened
+  std::uint32_t num_keyframes = 0, num_landmarks = 0;
+  std::uint32_t num_loops = 0, num_loops_refused = 0, num_segments = 0, num_joined = 0;
+};
+
+/// A view and where it was.
+struct SlamPose {
+  std::uint64_t frame = 0;
+  std::int64_t stamp_ns = 0;
+  std::uint32_t segment = 0;
+  Rigid3 T_map_camera;          ///< in the frame of the segment
+  std::uint32_t num_inliers = 0;
+  bool is_keyframe = false;
+};
+
+struct SlamResult {
+  std::vector<SlamPose> poses;          ///< of all tracked views, in their order
+  struct Segment {
+    std::uint32_t id = 0;
+    std::uint32_t num_keyframes = 0, num_views = 0;
+    MapFit fit;
+  };
+  std::vector<Segment> segments;        ///< most views first
+};
+
+/// Not thread-safe.
+class Slam {
+ public:
+  Slam(const RgbdCamera& camera, const SlamOptions& options);
+
+  /// The next view; `frame` is its index in the recording, ascending.
+  ViewReport add_view(std::uint64_t frame, const ViewFeatures& view);
+  [[nodiscard]] SlamCounts counts() const;
+
+  /// Landmark seen at or near a pixel of a tracked frame? For control points: see control point handling in tools.
+  [[nodiscard]] const SlamMap& map() const { return map_; }
+
+  /// Adjusts everything. `on_iteration` may stop the adjustment early.
+  [[nodiscard]] SlamResult finish(const BundleCallback& on_iteration = {});
+
+ private:
+  /// A tracked view, relative to a keyframe, with what it saw: enough to refine it once the landmarks are final.
+  struct TrackedView {
+    std::uint64_t frame = 0;
+    std::int64_t stamp_ns = 0;
+    std::uint32_t reference = 0;
+    Rigid3 T_reference_camera;
+    bool is_keyframe = false;
+    struct Seen {
+      std::uint32_t landmark;
+      float x, y, depth_m, sigma_px;
+    };
+    std::vector<Seen> seen;
+  };
+
+  bool begin_segment(std::uint64_t frame, ViewFeatures view, ViewReport* report);
+  void add_keyframe(std::uint64_t frame, ViewFeatures view, const Registration& tracked, ViewReport* report);
+  void remember(std::uint64_t frame, const ViewFeatures& view, const Registration& tracked, bool is_keyframe);
+  [[nodiscard]] BundleOptions bundle_options() const;
+  [[nodiscard]] Rigid3 final_pose(const TrackedView& view) const;
+
+  RgbdCamera camera_;
+  SlamOptions options_;
+  SlamMap map_;
+  ViewRegistration registration_;
+  PlaceIndex places_;
+  Tracker tracker_;
+  LoopCloser loops_;
+  std::vector<TrackedView> tracked_;
+  SlamCounts counts_;
+  std::uint32_t segment_ = 0;
+  int num_lost_in_a_row_ = 0;
+};
+
+}  // namespace camloc

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/slam/slam_map.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "core/features/hamming.h"
+
+namespace camloc {
+namespace {
+
+// Beyond this many sightings the descriptor is chosen from an even sample of them.
+constexpr std::size_t kMaxCompared = 12;
+
+bool is_before(const Sighting& a, std::uint32_t keyframe) { return a.keyframe < keyframe; }
+
+}  // namespace
+
+SlamMap::SlamMap(const RgbdCamera& camera, float scale_factor, int num_levels) : camera_(camera), num_levels_(num_levels) {
+  for (int level = 0; level < 256; ++level)
+    scale_.push_back(std::pow(scale_factor, static_cast<float>(std::min(level, num_levels - 1))));
+}
+
+std::uint32_t SlamMap::add_keyframe(std::uint64_t frame, std::uint32_t segment, ViewFeatures view) {
+  SlamKeyframe& keyframe = keyframes_.emplace_back();
+  keyframe.frame = frame;
+  keyframe.segment = segment;
+  keyframe.landmark_of_feature.assign(view.size(), kNoLandmark);
+  keyframe.view = std::move(view);
+  return static_cast<std::uint32_t>(keyframes_.size() - 1);
+}
+
+std::uint32_t SlamMap::add_landmark(Sighting first) {
+  const auto index = static_cast<std::uint32_t>(landmarks_.size());
+  const ViewFeatures& view = keyframes_[first.keyframe].view;
+  assert(view.depth_m[first.feature] > 0);
+  landmarks_.emplace_back().position_m = view.T_map_camera * view.point_camera(first.feature);
+  add_sighting(index, first);
+  summarize(index);
+  return index;
+}
+
+void SlamMap::add_sighting(std::uint32_t landmark, Sighting sighting) {
+  SlamKeyframe& keyframe = keyframes_[sighting.keyframe];
+  auto& sightings = landmarks_[landmark].sightings;
+  const auto place = std::lower_bound(sightings.begin(), sightings.end(), sighting.keyframe, is_before);
+  const bool is_seen = place != sightings.end() && place->keyframe == sighting.keyframe;
+  if (is_seen || keyframe.landmark_of_feature[sighting.feature] != kNoLandmark) return;
+  if (sightings.empty()) ++num_alive_;
+  sightings.insert(place, sighting);
+  keyframe.landmark_of_feature[sighting.feature] = static_cast<std::int32_t>(landmark);
+  ++keyframe.num_landmarks;
+}
+
+void SlamMap::remove_sighting(std::uint32_t landmark, std::uint32_t keyframe) {
+  auto& sightings = landmarks_[landmark].sightings;
+  const auto place = std::lower_bound(sightings.begin(), sightings.end(), keyframe, is_before);
+  if (place == sightings.end() || place->keyframe != keyframe) return;
+  keyframes_[keyframe].landmark_of_feature[place->feature] = kNoLandmark;
+  --keyframes_[keyframe].num_landmarks;
+  sightings.erase(place);
+  if (sightings.empty()) --num_alive_;
+}
+
+void SlamMap::merge(std::uint32_t from, std::uint32_t into) {
+  if (from == into) return;
+  const std::vector<Sighting> moved = landmarks_[from].sightings;
+  for (const Sighting& sighting : moved) {
+    remove_sighting(from, sighting.keyframe);
+    add_sighting(into, sighting);
+  }
+  landmarks_[from].merged_into = static_cast<std::int32_t>(into);
+  landmarks_[from].sightings.shrink_to_fit();
+  summarize(into);
+}
+
+std::int32_t SlamMap::resolve(std::uint32_t landmark) const {
+  while (landmarks_[landmark].merged_into != kNoLandmark) landmark = static_cast<std::uint32_t>(landmarks_[landmark].merged_into);
+  return landmarks_[landmark].is_alive() ? static_cast<std::int32_t>(landmark) : kNoLandmark;
+}
+
+float SlamMap::reference_m(const SlamKeyframe& keyframe, std::uint32_t feature, const Eigen::Vector3d& position_m) const {
+  const double distance = (position_m - keyframe.view.T_map_camera.translation).norm();
+  return static_cast<float>(distance) * scale_[keyframe.view.features.keypoints[feature].level];
+}
+
+void SlamMap::summarize(std::uint32_t index) {
+  SlamLandmark& landmark = landmarks_[index];
+  if (!landmark.is_alive()) return;
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  landmark.min_reference_m = 1e9F;
+  landmark.max_reference_m = 0;
+  for (const Sighting& s : landmark.sightings) {
+    const SlamKeyframe& keyframe = keyframes_[s.keyframe];
+    direction += (keyframe.view.T_map_camera.translation - landmark.position_m).normalized();
+    const float reference = reference_m(keyframe, s.feature, landmark.position_m);
+    landmark.min_reference_m = std::min(landmark.min_reference_m, reference);
+    landmark.max_reference_m = std::max(landmark.max_reference_m, reference);
+  }
+  landmark.direction = direction.norm() > 1e-9 ? direction.normalized().eval() : Eigen::Vector3d::Zero();
+
+  std::vector<Descriptor> seen;
+  const std::size_t step = (landmark.sightings.size() + kMaxCompared - 1) / kMaxCompared;
+  for (std::size_t i = 0; i < landmark.sightings.size(); i += step) {
+    const Sighting& s = landmark.sightings[i];
+    seen.push_back(keyframes_[s.keyframe].view.features.descriptors[s.feature]);
+  }
+  std::uint32_t best = 0xFFFFFFFF;
+  std::vector<std::uint16_t> distances(seen.size());
+  for (const Descriptor& candidate : seen) {
+    hamming_distances(candidate, seen, distances.data());
+    std::uint32_t sum = 0;
+    for (const std::uint16_t d : distances) sum += d;
+    if (sum < best) {
+      best = sum;
+      landmark.descriptor = candidate;
+    }
+  }
+}
+
+std::vector<CovisibleKeyframe> SlamMap::covisible(std::uint32_t keyframe, std::uint32_t min_shared) const {
+  std::vector<std::uint32_t> counts(keyframes_.size(), 0), touched;
+  for (const std::int32_t landmark : keyframes_[keyframe].landmark_of_feature) {
+    if (landmark == kNoLandmark) continue;
+    for (const Sighting& s : landmarks_[static_cast<std::size_t>(landmark)].sightings) {
+      if (counts[s.keyframe]++ == 0) touched.push_back(s.keyframe);
+    }
+  }
+  std::vector<CovisibleKeyframe> result;
+  for (const std::uint32_t k : touched) {
+    if (k != keyframe && counts[k] >= min_shared) result.push_back({k, counts[k]});
+  }
+  std::sort(result.begin(), result.end(), [](const CovisibleKeyframe& a, const CovisibleKeyframe& b) {
+    return a.num_shared != b.num_shared ? a.num_shared > b.num_shared : a.keyframe < b.keyframe;
+  });
+  return result;
+}
+
+void SlamMap::join_segments(std::uint32_t from, std::uint32_t into, const Rigid3& T_into_from) {
+  for (SlamLandmark& landmark : landmarks_) {
+    if (!landmark.is_alive() || keyframes_[landmark.sightings.front().keyframe].segment != from) continue;
+    landmark.position_m = T_into_from * landmark.position_m;
+    landmark.direction = T_into_from.rotation * landmark.direction;
+  }
+  for (SlamKeyframe& keyframe : keyframes_) {
+    if (keyframe.segment != from) continue;
+    keyframe.segment = into;
+    keyframe.view.T_map_camera = T_into_from * keyframe.view.T_map_camera;
+  }
+}
+
+}  // namespace camloc

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What SLAM knows while a recording is processed: keyframes with their features, landmarks, and who saw what. A segment is a
+// stretch of the recording that hangs together; segments have frames of their own until a place that both saw joins them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/features/descriptor.h"
+#include "core/geometry/camera.h"
+#include "core/geometry/rigid3.h"
+#include "core/map/view_features.h"
+
+namespace camloc {
+
+inline constexpr std::int32_t kNoLandmark = -1;
+
+/// Feature of a keyframe that shows a landmark.
+struct Sighting {
+  std::uint32_t keyframe = 0, feature = 0;
+};
+
+struct SlamLandmark {
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  ///< in the frame of its segment
+  std::vector<Sighting> sightings;                       ///< ascending by keyframe, one a keyframe
+  Descriptor descriptor;                                 ///< the sighting's that is closest to all others
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();   ///< mean unit vector to the cameras that saw it
+  float min_reference_m = 0, max_reference_m = 0;        ///< distance * scale of the level it was seen on
+  std::int32_t merged_into = kNoLandmark;                ///< gone: it is this one
+  [[nodiscard]] bool is_alive() const { return !sightings.empty(); }
+};
+
+struct SlamKeyframe {
+  std::uint64_t frame = 0;                        ///< index in the recording
+  std::uint32_t segment = 0;
+  ViewFeatures view;                              ///< T_map_camera: in the frame of the segment
+  std::vector<std::int32_t> landmark_of_feature;  ///< kNoLandmark where there is none
+  std::uint32_t num_landmarks = 0;
+};
+
+/// A keyframe and how many landmarks it shares with another one.
+struct CovisibleKeyframe {
+  std::uint32_t keyframe = 0, num_shared = 0;
+};
+
+/// Keeps both directions of "who saw what" in step. Not thread-safe; allocates as it goes.
+class SlamMap {
+ public:
+  SlamMap(const RgbdCamera& camera, float scale_factor, int num_levels);
+
+  std::uint32_t add_keyframe(std::uint64_t frame, std::uint32_t segment, ViewFeatures view);
+  /// A landmark at the depth of a feature that has one.
+  std::uint32_t add_landmark(Sighting first);
+  /// No-op where the keyframe already sees the landmark or the feature already shows one.
+  void add_sighting(std::uint32_t landmark, Sighting sighting);
+  void remove_sighting(std::uint32_t landmark, std::uint32_t keyframe);
+  /// `from` becomes `into`; where a keyframe saw both, its sighting of `into` stays.
+  void merge(std::uint32_t from, std::uint32_t into);
+  /// The landmark this one has become after merging, or kNoLandmark when it is gone.
+  [[nodiscard]] std::int32_t resolve(std::uint32_t landmark) const;
+  /// Descriptor, direction and scale range from the sightings; call after these have changed.
+  void summarize(std::uint32_t landmark);
+
+  /// Keyframes that share at least `min_shared` landmarks with this one, most first; ties by index.
+  [[nodiscard]] std::vector<CovisibleKeyframe> covisible(std::uint32_t keyframe, std::uint32_t min_shared) const;
+  /// Moves all keyframes of a segment, and what they saw, into the frame of another one.
+  void join_segments(std::uint32_t from, std::uint32_t into, const Rigid3& T_into_from);
+
+  [[nodiscard]] const RgbdCamera& camera() const { return camera_; }
+  [[nodiscard]] float scale_of_level(std::uint8_t level) const { return scale_[level]; }
+  [[nodiscard]] int num_levels() const { return num_levels_; }
+  [[nodiscard]] std::span<const SlamKeyframe> keyframes() const { return keyframes_; }
+  [[nodiscard]] std::span<const SlamLandmark> landmarks() const { return landmarks_; }
+  [[nodiscard]] SlamKeyframe& keyframe(std::uint32_t i) { return keyframes_[i]; }
+  [[nodiscard]] const SlamKeyframe& keyframe(std::uint32_t i) const { return keyframes_[i]; }
+  [[nodiscard]] SlamLandmark& landmark(std::uint32_t i) { return landmarks_[i]; }
+  [[nodiscard]] const SlamLandmark& landmark(std::uint32_t i) const { return landmarks_[i]; }
+  [[nodiscard]] std::uint32_t num_alive_landmarks() const { return num_alive_; }
+
+ private:
+  [[nodiscard]] float reference_m(const SlamKeyframe& keyframe, std::uint32_t feature, const Eigen::Vector3d& position_m) const;
+
+  RgbdCamera camera_;
+  int num_levels_;
+  std::vector<float> scale_;
+  std::vector<SlamKeyframe> keyframes_;
+  std::vector<SlamLandmark> landmarks_;
+  std::uint32_t num_alive_ = 0;
+};
+
+}  // namespace camloc

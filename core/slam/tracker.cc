@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/slam/tracker.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace camloc {
+namespace {
+
+constexpr std::size_t kPlacesTried = 5, kKeyframesPerPlace = 6;
+
+double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
+
+double median_depth_m(const ViewFeatures& view) {
+  std::vector<float> depths;
+  for (const float z : view.depth_m) {
+    if (z > 0) depths.push_back(z);
+  }
+  if (depths.empty()) return 2.0;
+  std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
+  return depths[depths.size() / 2];
+}
+
+/// A share of the motion, or more than all of it.
+Rigid3 scaled(const Rigid3& motion, double factor) {
+  return {exp_so3(factor * log_so3(motion.rotation)), factor * motion.translation};
+}
+
+}  // namespace
+
+Tracker::Tracker(const TrackerOptions& options, SlamMap* map, ViewRegistration* registration)
+    : options_(options), map_(map), registration_(registration) {}
+
+void Tracker::set_reference(std::uint32_t keyframe) {
+  const Rigid3 T_map_camera = map_->keyframe(reference_).view.T_map_camera * T_reference_camera_;
+  T_reference_camera_ = map_->keyframe(keyframe).view.T_map_camera.inverse() * T_map_camera;
+  reference_ = keyframe;
+  is_local_set_stale_ = true;
+}
+
+void Tracker::accept(std::int64_t stamp_ns, const Rigid3& T_map_camera) {
+  const Rigid3 T_map_reference = map_->keyframe(reference_).view.T_map_camera;
+  const Rigid3 T_reference_new = T_map_reference.inverse() * T_map_camera;
+  const double dt_s = seconds(stamp_ns - last_stamp_ns_);
+  velocity_.reset();
+  if (dt_s > 0 && dt_s <= options_.max_gap_s) velocity_ = Velocity{T_reference_camera_.inverse() * T_reference_new, dt_s};
+  T_reference_camera_ = T_reference_new;
+  last_stamp_ns_ = stamp_ns;
+}
+
+Rigid3 Tracker::predict(std::int64_t stamp_ns) const {
+  const Rigid3 T_map_last = map_->keyframe(reference_).view.T_map_camera * T_reference_camera_;
+  const double dt_s = seconds(stamp_ns - last_stamp_ns_);
+  if (!velocity_ || dt_s <= 0 || dt_s > options_.max_gap_s) return T_map_last;
+  return T_map_last * scaled(velocity_->T_last_next, std::min(dt_s / velocity_->dt_s, 4.0));
+}
+
+void Tracker::update_local_set() {
+  if (!is_local_set_stale_) return;
+  std::vector<std::uint32_t> keyframes = {reference_};
+  for (const CovisibleKeyframe& c : map_->covisible(reference_, 10)) {
+    if (keyframes.size() >= options_.num_local_keyframes) break;
+    keyframes.push_back(c.keyframe);
+  }
+  local_.assign(*map_, keyframes, options_.max_local_landmarks);
+  is_local_set_stale_ = false;
+}
+
+bool Tracker::is_plausible(const Registration& found, std::int64_t stamp_ns) const {
+  if (!found.is_found || found.num_inliers() < options_.min_inliers || found.inlier_ratio() < options_.min_inlier_ratio) return false;
+  const Rigid3 T_map_last = map_->keyframe(reference_).view.T_map_camera * T_reference_camera_;
+  const double dt_s = std::max(seconds(stamp_ns - last_stamp_ns_), 0.0);
+  return (found.T_map_camera.translation - T_map_last.translation).norm() <= 0.2 + options_.max_speed_m_s * dt_s;
+}
+
+Registration Tracker::track(const ViewFeatures& view, std::uint64_t seed) {
+  update_local_set();
+  const Rigid3 T_predicted = predict(view.stamp_ns);
+  Registration found = registration_->guided(view, &local_, T_predicted, options_.radius_px, seed);
+  if (!is_plausible(found, view.stamp_ns)) found = registration_->guided(view, &local_, T_predicted, options_.wide_radius_px, seed);
+  if (!is_plausible(found, view.stamp_ns)) found = registration_->unguided(view, &local_, seed);
+  if (!is_plausible(found, view.stamp_ns)) return {};
+  const std::uint32_t best = best_reference(found);
+  if (best != reference_) set_reference(best);
+  return found;
+}
+
+// The keyframe that sees most of what the view sees.
+std::uint32_t Tracker::best_reference(const Registration& tracked) const {
+  std::vector<std::uint32_t> counts(map_->keyframes().size(), 0);
+  for (const RegisteredPair& pair : tracked.inliers) {
+    for (const Sighting& s : map_->landmark(pair.landmark).sightings) ++counts[s.keyframe];
+  }
+  std::uint32_t best = reference_;
+  for (std::uint32_t k = 0; k < counts.size(); ++k) {
+    if (counts[k] > counts[best]) best = k;
+  }
+  return best;
+}
+
+Registration Tracker::find_back(const ViewFeatures& view, const PlaceIndex& places, std::uint64_t seed) {
+  const std::uint32_t segment = map_->keyframe(reference_).segment;
+  Registration best;
+  std::uint32_t best_keyframe = 0;
+  std::size_t num_tried = 0;
+  for (const RankedPlace& place : places.query(view.features.descriptors, 4 * kPlacesTried)) {
+    if (map_->keyframe(place.keyframe).segment != segment) continue;
+    if (num_tried++ == kPlacesTried) break;
+    std::vector<std::uint32_t> keyframes = {place.keyframe};
+    for (const CovisibleKeyframe& c : map_->covisible(place.keyframe, 15)) {
+      if (keyframes.size() >= kKeyframesPerPlace) break;
+      keyframes.push_back(c.keyframe);
+    }
+    place_.assign(*map_, keyframes, options_.max_local_landmarks);
+    const Registration found = registration_->unguided(view, &place_, seed);
+    if (!is_plausible(found, view.stamp_ns) || found.num_inliers() <= best.num_inliers()) continue;
+    best = found;
+    best_keyframe = place.keyframe;
+  }
+  const bool is_sure = best.is_found && best.num_inliers() >= options_.min_found_inliers && best.spread >= options_.min_spread &&
+                       best.depth_agreement >= options_.min_depth_agreement;
+  if (!is_sure) return {};
+  set_reference(best_keyframe);
+  set_reference(best_reference(best));
+  velocity_.reset();
+  return best;
+}
+
+bool Tracker::wants_keyframe(const ViewFeatures& view, const Registration& tracked) const {
+  const SlamKeyframe& reference = map_->keyframe(reference_);
+  const Rigid3 T_reference_camera = reference.view.T_map_camera.inverse() * tracked.T_map_camera;
+  if (T_reference_camera.translation.norm() > options_.keyframe_distance * median_depth_m(view)) return true;
+  if (rotation_distance_rad(T_reference_camera.rotation, Eigen::Quaterniond::Identity()) > options_.keyframe_angle_rad) return true;
+  const double share = static_cast<double>(tracked.num_inliers()) / std::max<double>(1, static_cast<double>(view.size()));
+  const double share_then =
+      static_cast<double>(reference.num_landmarks) / std::max<double>(1, static_cast<double>(reference.view.size()));
+  return tracked.num_inliers() < options_.keyframe_inliers || share < options_.keyframe_share * share_then;
+}
+
+}  // namespace camloc
