@@ -1,0 +1,65 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What was seen in each frame of a walk, in a file beside the map while it is built. The map is made in two passes: where was
+// the camera, then what did it see from there; the log spares the second pass the images, and a build that was interrupted
+// goes on from it with the very same state, because every view so far is processed again in the same order.
+//
+// Layout, little-endian: a 64-byte header (magic, version, identity of the build), then records: RecordHeader, the arrays of
+// the view, an XXH3 hash over both. A record that was cut off by a crash is where the log ends.
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/map/view_features.h"
+
+namespace camloc::map_tool {
+
+struct LoggedView {
+  std::uint64_t frame = 0;                     ///< index in the recording
+  ViewFeatures view;                           ///< the pose is not kept
+  std::vector<Eigen::Vector3f> surface_m;      ///< coarse sample of what the depth camera saw, in the camera frame
+};
+
+/// Appends views. Not thread-safe.
+class ViewLogWriter {
+ public:
+  /// A new log; an old one at the path is replaced. `identity` names recording, camera and options: a log is only good for
+  /// the build that wrote it.
+  static Result<ViewLogWriter> create(const std::string& path, std::uint64_t identity);
+  /// Goes on after the first `size_bytes` of an existing log.
+  static Result<ViewLogWriter> append(const std::string& path, std::uint64_t size_bytes);
+  /// kIo when the disk is full; the views before are safe.
+  [[nodiscard]] Status add(const LoggedView& view);
+  [[nodiscard]] Status flush();
+
+ private:
+  ViewLogWriter() = default;
+  std::string path_;
+  std::ofstream file_;
+  std::vector<char> bytes_;
+};
+
+/// Reads views in their order. Not thread-safe.
+class ViewLogReader {
+ public:
+  /// kNotFound; kCorrupt for another kind of file; kInvalid where the log belongs to another build.
+  static Result<ViewLogReader> open(const std::string& path, std::uint64_t identity);
+  /// kEnd after the last whole record.
+  [[nodiscard]] Status next(LoggedView* view);
+  /// Where the records read so far end.
+  [[nodiscard]] std::uint64_t size_bytes() const { return position_; }
+
+ private:
+  ViewLogReader() = default;
+  std::string path_;
+  std::ifstream file_;
+  std::uint64_t position_ = 0, file_bytes_ = 0;
+  std::vector<char> bytes_;
+};
+
+}  // namespace camloc::map_tool

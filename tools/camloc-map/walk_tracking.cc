@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/camloc-map/walk_tracking.h"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "drivers/camera_file.h"
+#include "drivers/frame_source.h"
+#include "tools/camloc-map/surface_sample.h"
+#include "tools/camloc-map/view_log.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/progress_line.h"
+
+namespace camloc::map_tool {
+namespace {
+
+using tools::InterruptGuard;
+using tools::ProgressLine;
+
+std::string note_of(const SlamCounts& counts) {
+  std::string note = std::to_string(counts.num_keyframes) + " keyframes, " + std::to_string(counts.num_landmarks) + " landmarks";
+  if (counts.num_loops > 0) note += ", " + std::to_string(counts.num_loops) + " loops";
+  if (counts.num_segments > counts.num_joined + 1) note += ", " + std::to_string(counts.num_segments - counts.num_joined) + " segments";
+  if (counts.num_lost > 0) note += ", " + std::to_string(counts.num_lost) + " lost";
+  return note;
+}
+
+/// One walk on its way through extraction, tracking and the log.
+class Pass {
+ public:
+  Pass(const WalkRequest& request, Slam* slam, WalkCheck* check)
+      : request_(request), slam_(slam), check_(check), extractor_(request.camera, request.orb), progress_(request.num_frames) {}
+
+  /// Processes what an earlier pass has seen; says where its log ends.
+  Status replay(std::uint64_t* log_bytes) {
+    auto reader = ViewLogReader::open(request_.log_path, walk_identity(request_));
+    if (!reader.is_ok()) return reader.status();
+    LoggedView logged;
+    while (!InterruptGuard::is_interrupted() && reader->next(&logged).is_ok()) {
+      check_->see_view(logged.frame, logged.view.stamp_ns, logged.view.size(), num_with_depth(logged.view));
+      track(logged);
+      last_frame_ = logged.frame;
+      ++end_.num_resumed;
+    }
+    *log_bytes = reader->size_bytes();
+    return Status::ok();
+  }
+
+  Status run(ViewLogWriter log) {
+    auto source = open_frame_source(request_.url);
+    if (!source.is_ok()) return source.status();
+    FrameBuffer buffer;
+    while (!InterruptGuard::is_interrupted()) {
+      const Status status = source.value()->next(&buffer, std::chrono::milliseconds(1000));
+      if (status.code() == ErrorCode::kEnd) break;
+      if (status.code() == ErrorCode::kTimeout) continue;
+      if (status.code() == ErrorCode::kCorrupt) {
+        ++num_done_;
+        if (end_.num_broken++ == 0) end_.first_broken = status.message();
+        continue;
+      }
+      if (!status.is_ok()) return status;
+      if (end_.num_resumed > 0 && buffer.sequence <= last_frame_) continue;
+      if (const Status done = process(buffer.view(), &log); !done.is_ok()) return done;
+    }
+    end_.is_interrupted = InterruptGuard::is_interrupted();
+    return log.flush();
+  }
+
+  [[nodiscard]] const WalkEnd& end() const { return end_; }
+
+ private:
+  static std::size_t num_with_depth(const ViewFeatures& view) {
+    return static_cast<std::size_t>(std::count_if(view.depth_m.begin(), view.depth_m.end(), [](float z) { return z > 0; }));
+  }
+
+  Status process(const Frame& frame, ViewLogWriter* log) {
+    if (const Status checked = extractor_.check(frame); !checked.is_ok()) return checked;
+    const LoggedView logged{frame.sequence, extractor_.extract(frame), sample_surface(request_.camera, frame.depth)};
+    check_->see_frame(frame, logged.view.size(), num_with_depth(logged.view));
+    if (const Status usable = check_->early_verdict(); !usable.is_ok()) return usable;
+    track(logged);
+    return log->add(logged);
+  }
+
+  void track(const LoggedView& logged) {
+    check_->see_report(slam_->add_view(logged.frame, logged.view));
+    progress_.show(++num_done_, note_of(slam_->counts()));
+  }
+
+  const WalkRequest& request_;
+  Slam* slam_;
+  WalkCheck* check_;
+  ViewExtractor extractor_;
+  ProgressLine progress_;
+  WalkEnd end_;
+  std::uint64_t num_done_ = 0, last_frame_ = 0;
+};
+
+}  // namespace
+
+std::uint64_t walk_identity(const WalkRequest& request) {
+  const std::string text = request.url + "\n" + format_camera_toml(request.camera) + "\n" + std::to_string(request.orb.num_features);
+  return XXH3_64bits(text.data(), text.size());
+}
+
+Result<WalkEnd> track_walk(const WalkRequest& request, Slam* slam, WalkCheck* check) {
+  Pass pass(request, slam, check);
+  std::uint64_t log_bytes = 0;
+  if (request.is_resumed) {
+    if (const Status replayed = pass.replay(&log_bytes); !replayed.is_ok()) return replayed;
+  }
+  auto log = request.is_resumed ? ViewLogWriter::append(request.log_path, log_bytes)
+                                : ViewLogWriter::create(request.log_path, walk_identity(request));
+  if (!log.is_ok()) return log.status();
+  if (const Status done = pass.run(std::move(log).value()); !done.is_ok()) return done;
+  return pass.end();
+}
+
+}  // namespace camloc::map_tool
