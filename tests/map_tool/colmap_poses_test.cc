@@ -9,7 +9,7 @@
 #include <filesystem>
 
 #include "drivers/image_writer.h"
-#include "tests/map_tool/room_map.h"
+#include "tests/map/room_map.h"
 #include "tools/camloc-map/posed_frames.h"
 
 namespace camloc::map_tool {

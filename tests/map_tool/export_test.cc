@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "drivers/sequence.h"
-#include "tests/map_tool/room_map.h"
+#include "tests/map/room_map.h"
 #include "tools/camloc-map/map_up.h"
 
 namespace camloc::map_tool {

@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// How well a camera would be localized where a map was made, from the map alone: every keyframe is asked as if it were a query
+// made of its own landmarks. Expected precision comes from the information matrix of reprojection and depth; look-alike places
+// from retrieval, descriptors, and the pose that the other place would explain them with (what a false fix is made of).
+// It says nothing about places that no keyframe saw, and nothing about change since.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/map/map_view.h"
+
+namespace camloc {
+
+enum class FixOutlook : std::uint8_t {
+  kLikely,     ///< a fix is likely
+  kLookAlike,  ///< another place of the map explains this view nearly as well: a fix may be refused, at worst be wrong
+  kScanAgain,  ///< too little in the map for a fix
+};
+
+/// Why a place should be scanned again.
+enum class WeakSpot : std::uint8_t { kNone, kFewLandmarks, kPoorSpread, kImprecise };
+
+struct LocalizabilityOptions {
+  std::uint32_t min_observations = 2;   ///< frames that must have seen a landmark for a query to see it, too
+  double repeatability = 0.5;           ///< share of those that a query finds again and matches
+  std::uint32_t min_landmarks = 60;     ///< seen by others, too; half of them found again is half above the localizer's 20
+  double min_spread = 0.2;              ///< of the image's cells that hold one; the localizer refuses below 0.1
+  double max_position_sigma_m = 0.05;   ///< expected, largest axis
+  double pixel_sigma_px = 1.0;          ///< on pyramid level 0; grows with the level
+
+  double rival_distance_m = 3.0;        ///< another place is at least this far away
+  double rival_turn_rad = 1.047;        ///< or turned by this, and
+  double max_common_share = 0.05;       ///< shares at most this part of the landmarks
+  double same_point_m = 1.0;            ///< landmarks closer than this are the same thing mapped twice, no look-alike
+  int max_rivals = 5;                   ///< most similar other places that are compared
+  int max_match_distance = 48;          ///< of 256 bits, mutually nearest
+  /// From here on a place looks alike: this share of its descriptors matches (rooms of one building have up to 0.08 by chance,
+  /// bays of one corridor 0.1 to 0.45), or that many matches agree on one pose (by chance up to 6): half of them found again are the
+  /// 20 inliers that the localizer asks for.
+  double min_rival_share = 0.25;
+  std::uint32_t min_rival_inliers = 40;
+  double max_error_px = 5.0;            ///< of that pose
+};
+
+/// The most deceiving other place.
+struct RivalPlace {
+  std::uint32_t keyframe = 0;
+  double matched_share = 0;             ///< of the descriptors that match mutually
+  std::uint32_t num_matches = 0;
+  std::uint32_t num_inliers = 0;        ///< matches that agree on one pose of this view at that place
+};
+
+struct KeyframeLocalizability {
+  FixOutlook outlook = FixOutlook::kLikely;
+  WeakSpot weak_spot = WeakSpot::kNone; ///< set with kScanAgain
+  std::uint32_t num_landmarks = 0;      ///< of the keyframe that other frames saw, too
+  double spread = 0;                    ///< share of the image's 8 x 6 cells that hold one
+  double position_sigma_m = 0;          ///< expected, of the worst axis; infinite where the view does not fix the pose
+  double rotation_sigma_rad = 0;
+  std::optional<RivalPlace> rival;      ///< the most similar other place, look-alike or not
+};
+
+/// One entry a keyframe. A weak place is kScanAgain even where it looks like another one as well. The same map gives the same bits.
+[[nodiscard]] std::vector<KeyframeLocalizability> assess_localizability(const MapView& map, const LocalizabilityOptions& options = {});
+
+}  // namespace camloc
