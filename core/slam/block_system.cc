@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Storage and factorization of the block system.
+#include "core/slam/block_system.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <bit>
+#include <cassert>
+
+namespace camloc {
+
+BlockPattern::BlockPattern(std::uint32_t num_blocks)
+    : num_blocks_(num_blocks), words_per_column_((num_blocks + 63) / 64), words_(words_per_column_ * num_blocks, 0) {
+  for (std::uint32_t i = 0; i < num_blocks; ++i) add(i, i);
+}
+
+void BlockPattern::add(std::uint32_t a, std::uint32_t b) {
+  const std::uint32_t row = std::min(a, b), column = std::max(a, b);
+  words_[column * words_per_column_ + row / 64] |= std::uint64_t{1} << (row % 64);
+}
+
+BlockSystem::BlockSystem(std::uint32_t num_blocks)
+    : num_blocks_(num_blocks), is_sparse_(false),
+      blocks_(kBlockDoubles * num_blocks * (std::size_t{num_blocks} + 1) / 2), gradient_(num_blocks) {
+  set_zero();
+}
+
+BlockSystem::BlockSystem(const BlockPattern& pattern)
+    : num_blocks_(pattern.num_blocks()), is_sparse_(true), gradient_(num_blocks_),
+      words_per_column_(pattern.words_per_column()), words_(pattern.words()), blocks_before_word_(words_.size()) {
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < words_.size(); ++i) {
+    blocks_before_word_[i] = count;
+    count += static_cast<std::uint32_t>(std::popcount(words_[i]));
+  }
+  blocks_.resize(kBlockDoubles * count);
+  set_zero();
+}
+
+void BlockSystem::set_zero() {
+  std::fill(blocks_.begin(), blocks_.end(), 0.0);
+  std::fill(gradient_.begin(), gradient_.end(), Vector6d::Zero());
+}
+
+std::size_t BlockSystem::index_of(std::uint32_t row, std::uint32_t column) const {
+  assert(row <= column && column < num_blocks_);
+  if (!is_sparse_) return std::size_t{column} * (std::size_t{column} + 1) / 2 + row;
+  const std::size_t word = column * words_per_column_ + row / 64;
+  const std::uint64_t bit = std::uint64_t{1} << (row % 64);
+  assert((words_[word] & bit) != 0);
+  return blocks_before_word_[word] + static_cast<std::size_t>(std::popcount(words_[word] & (bit - 1)));
+}
+
+bool BlockSystem::solve(std::vector<Vector6d>* x) {
+  x->resize(num_blocks_);
+  if (num_blocks_ == 0) return true;
+  Eigen::Map<Eigen::VectorXd> out((*x)[0].data(), kSize * static_cast<Eigen::Index>(num_blocks_));
+  Eigen::VectorXd solution = -Eigen::Map<const Eigen::VectorXd>(gradient_[0].data(), out.size());
+  const bool is_solved = is_sparse_ ? solve_sparse(&solution) : solve_dense(&solution);
+  out = solution;
+  return is_solved && solution.allFinite();
+}
+
+bool BlockSystem::solve_dense(Eigen::VectorXd* x) {
+  dense_.resize(x->size(), x->size());
+  const double* block = blocks_.data();
+  for (Eigen::Index column = 0; column < num_blocks_; ++column) {
+    for (Eigen::Index row = 0; row <= column; ++row, block += kBlockDoubles) {
+      dense_.block<kSize, kSize>(kSize * column, kSize * row) =
+          Eigen::Map<const Matrix6d>(block).transpose();  // Eigen factorizes the lower triangle faster
+    }
+  }
+  // Only this triangle is read, so what else is in a diagonal block does not matter.
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower> factor(dense_);
+  if (factor.info() != Eigen::Success) return false;
+  factor.solveInPlace(*x);
+  return true;
+}
+
+void BlockSystem::lay_out_scalars() {
+  const auto size = static_cast<Eigen::Index>(num_blocks_) * kSize;
+  sparse_.resize(size, size);
+  sparse_.resizeNonZeros(static_cast<Eigen::Index>(blocks_.size()));
+  Eigen::Index count = 0;
+  for (std::uint32_t column = 0; column < num_blocks_; ++column) {
+    for (int k = 0; k < kSize; ++k) {
+      sparse_.outerIndexPtr()[kSize * column + static_cast<std::uint32_t>(k)] = static_cast<int>(count);
+      for (std::uint32_t row = 0; row <= column; ++row) {
+        if ((words_[column * words_per_column_ + row / 64] >> (row % 64) & 1U) == 0) continue;
+        for (int r = 0; r < kSize; ++r) sparse_.innerIndexPtr()[count++] = static_cast<int>(row) * kSize + r;
+      }
+    }
+  }
+  sparse_.outerIndexPtr()[size] = static_cast<int>(count);
+  sparse_factor_.analyzePattern(sparse_);
+}
+
+bool BlockSystem::solve_sparse(Eigen::VectorXd* x) {
+  if (sparse_.rows() == 0) lay_out_scalars();
+  const double* block = blocks_.data();
+  for (std::uint32_t column = 0; column < num_blocks_; ++column) {
+    const int* const begin = sparse_.outerIndexPtr() + kSize * column;
+    const int height = begin[1] - begin[0];
+    double* const values = sparse_.valuePtr() + begin[0];
+    for (int row = 0; row < height; row += kSize, block += kBlockDoubles) {
+      for (int k = 0; k < kSize; ++k) std::copy_n(block + kSize * k, kSize, values + k * height + row);
+    }
+  }
+  sparse_factor_.factorize(sparse_);
+  // A product of L, D and L' exists for indefinite matrices, too.
+  if (sparse_factor_.info() != Eigen::Success || !(sparse_factor_.vectorD().minCoeff() > 0)) return false;
+  *x = sparse_factor_.solve(*x).eval();
+  return true;
+}
+
+}  // namespace camloc

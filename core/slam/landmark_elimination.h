@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Inside of bundle_adjustment.cc: one landmark with its observations is linearized, eliminated from the equations, and found
+// again once the cameras have moved. Nothing is kept in between: a landmark's blocks are cheaper to compute twice than to keep.
+#pragma once
+
+#include <vector>
+
+#include "core/slam/block_system.h"
+#include "core/slam/bundle_terms.h"
+
+namespace camloc {
+
+/// A landmark's view into the problem.
+struct LandmarkObservations {
+  const BundleObservation* begin;
+  const BundleObservation* end;
+  const PointPrior* priors_begin;
+  const PointPrior* priors_end;
+};
+
+/// Reduced system of the cameras and what Marquardt's damping needs of it.
+struct ReducedCameras {
+  BlockSystem system;
+  std::vector<Vector6d> diagonal;  ///< of the cameras' own blocks, before the elimination
+
+  explicit ReducedCameras(std::uint32_t num_cameras) : system(num_cameras) {}
+  explicit ReducedCameras(const BlockPattern& pattern) : system(pattern) {}
+};
+
+/// Not thread-safe: holds scratch for the landmark at hand.
+class LandmarkEliminator {
+ public:
+  LandmarkEliminator(const BundleModel& model, const std::vector<BundleCamera>& cameras) : model_(model), cameras_(cameras) {}
+
+  /// Adds the landmark at X to the reduced system; returns its cost. With damping > 0 a landmark that its observations leave
+  /// free to move along a ray holds no camera.
+  double eliminate(const LandmarkObservations& landmark, const Eigen::Vector3d& X, double damping, ReducedCameras* reduced);
+
+  /// The landmark's own step given those of the cameras; zero where nothing sees it.
+  [[nodiscard]] Eigen::Vector3d step(const LandmarkObservations& landmark, const Eigen::Vector3d& X, double damping,
+                                     const std::vector<Vector6d>& camera_steps) const;
+
+  [[nodiscard]] double cost(const LandmarkObservations& landmark, const Eigen::Vector3d& X) const;
+
+ private:
+  /// A free camera's part: N = J_p' W J_p R' (camera axes times map axes), from which its 6x3 block is -[N; p x N].
+  struct Entry {
+    std::uint32_t camera;
+    Eigen::Matrix<double, 6, 3> E;  ///< block of camera and landmark, later times L^-T
+  };
+
+  void add_camera(const BundleTerms& terms, const BundleCamera& camera, ReducedCameras* reduced);
+  Entry* entry_of(std::uint32_t camera);
+
+  const BundleModel& model_;
+  const std::vector<BundleCamera>& cameras_;
+  std::vector<Entry> entries_;  ///< by camera
+};
+
+}  // namespace camloc
