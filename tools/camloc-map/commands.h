@@ -14,6 +14,7 @@ namespace camloc::map_tool {
 void add_build_command(CLI::App& app, int& exit_code);
 void add_export_command(CLI::App& app, int& exit_code);
 void add_view_command(CLI::App& app, int& exit_code);
+void add_georef_command(CLI::App& app, int& exit_code);
 
 /// Prints "camloc-map: <message>" on stderr and returns `exit_code`.
 int report_error(const Status& status, int exit_code);
