@@ -155,7 +155,7 @@ TEST_P(FitView, TopViewFillsThePictureAlongTheLongSide) {
   const Eigen::Vector2d middle = project(view, center);
   EXPECT_NEAR(middle.x(), 549.5, 10);
   EXPECT_NEAR(middle.y(), 299.5, 10);
-  EXPECT_LT(std::abs((project(view, center + along) - middle).y()), 0.03 * view.px_per_m);
+  EXPECT_LT(std::abs((project(view, center + along) - middle).y()), 0.07 * view.px_per_m);
   // From above and not in a mirror: counter-clockwise in the world is counter-clockwise on paper.
   const Eigen::Vector2d x = project(view, center + Eigen::Vector3d::UnitX()) - middle, y = project(view, center + Eigen::Vector3d::UnitY()) - middle;
   EXPECT_LT(x.x() * y.y() - x.y() * y.x(), 0);

@@ -12,6 +12,7 @@
 namespace camloc::map_tool {
 
 void add_build_command(CLI::App& app, int& exit_code);
+void add_eval_command(CLI::App& app, int& exit_code);
 void add_export_command(CLI::App& app, int& exit_code);
 void add_view_command(CLI::App& app, int& exit_code);
 void add_georef_command(CLI::App& app, int& exit_code);

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int exit_code = 0;
   camloc::map_tool::add_build_command(app, exit_code);
+  camloc::map_tool::add_eval_command(app, exit_code);
   camloc::map_tool::add_export_command(app, exit_code);
   camloc::map_tool::add_view_command(app, exit_code);
   camloc::map_tool::add_georef_command(app, exit_code);

@@ -28,7 +28,7 @@ struct Viewpoint {
 };
 
 /// Seen along -up: the whole of `points` (1st to 99th percentile) fits into width x height with a margin. To the right goes
-/// the longer side of the smallest rectangle around the points, in a building the direction of its walls. Points that are
+/// the direction in which walls run, the longer of the two. Points that are
 /// not finite are left out; without points a metre around the origin is shown.
 [[nodiscard]] Viewpoint fit_top_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width, int height,
                                      int margin_px);

@@ -45,22 +45,36 @@ Range range_along(const std::vector<Eigen::Vector3d>& points, const Eigen::Vecto
   return percentiles(&values);
 }
 
-/// Longer side of the smallest rectangle across `up` that holds the points: in a building the direction of its walls.
+/// How much the points crowd at few places along `axis`: walls across it do that.
+double concentration(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& axis, const Range& range, double bin_m) {
+  std::vector<double> bins(static_cast<std::size_t>(range.extent() / bin_m) + 1);
+  for (const Eigen::Vector3d& p : points) {
+    const double bin = (axis.dot(p) - range.low) / bin_m;
+    if (bin >= 0 && bin < static_cast<double>(bins.size())) ++bins[static_cast<std::size_t>(bin)];
+  }
+  double sum = 0;
+  for (const double count : bins) sum += count * count;
+  return sum;
+}
+
+/// The direction across `up` in which walls run, of the two the one in which the points reach farther.
 Eigen::Vector3d long_side(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up) {
   // Start from the world's own axis that lies flattest, so that a map with straight walls keeps its axes.
   Eigen::Index flattest = 0;
   up.cwiseAbs().minCoeff(&flattest);
   const Eigen::Vector3d first = (Eigen::Vector3d::Unit(flattest) - up * up[flattest]).normalized();
   const Eigen::Vector3d second = up.cross(first);
+  const double bin_m = std::max(range_along(points, first).extent(), range_along(points, second).extent()) / 200;
   Eigen::Vector3d best = first;
-  double best_area = std::numeric_limits<double>::infinity();
+  double best_score = -1;
   for (int degrees = 0; degrees < 90; ++degrees) {
     const double angle = degrees * std::numbers::pi / 180;
     const Eigen::Vector3d a = std::cos(angle) * first + std::sin(angle) * second, b = up.cross(a);
-    const double along_a = range_along(points, a).extent(), along_b = range_along(points, b).extent();
-    if (along_a * along_b >= 0.99 * best_area) continue;  // a turn must be worth it
-    best_area = along_a * along_b;
-    best = along_a >= along_b ? a : b;
+    const Range along_a = range_along(points, a), along_b = range_along(points, b);
+    const double score = concentration(points, a, along_a, bin_m) + concentration(points, b, along_b, bin_m);
+    if (score <= 1.01 * best_score) continue;  // a turn must be worth it
+    best_score = score;
+    best = along_a.extent() >= along_b.extent() ? a : b;
   }
   Eigen::Index main = 0;
   best.cwiseAbs().maxCoeff(&main);

@@ -1,0 +1,168 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/camloc-map/cloud_registration.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/map_tool/scanned_flat.h"
+
+namespace camloc::map_tool {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+Rigid3 motion(const Eigen::Vector3d& rotation_deg, const Eigen::Vector3d& translation_m) {
+  return {exp_so3(kDegree * rotation_deg), translation_m};
+}
+
+/// Landmarks in a map whose frame differs from the cloud's by `T_cloud_map`.
+std::vector<Eigen::Vector3d> in_map(const std::vector<Eigen::Vector3d>& landmarks, const Rigid3& T_cloud_map) {
+  std::vector<Eigen::Vector3d> result;
+  for (const Eigen::Vector3d& p : landmarks) result.push_back(T_cloud_map.inverse() * p);
+  return result;
+}
+
+void expect_near(const Rigid3& T, const Rigid3& expected, double tolerance_m, double tolerance_deg) {
+  EXPECT_LT((T * Eigen::Vector3d(4, 2, 1) - expected * Eigen::Vector3d(4, 2, 1)).norm(), tolerance_m);
+  EXPECT_LT(rotation_distance_rad(T.rotation, expected.rotation), tolerance_deg * kDegree);
+}
+
+TEST(AlignPairs, RecoversASimilarity) {
+  const Rigid3 truth = motion({20, -50, 130}, {3, -2, 10});
+  const std::vector<Eigen::Vector3d> b{{0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {1, 1, 2}};
+  std::vector<Eigen::Vector3d> a, a_scaled;
+  for (const auto& p : b) a.push_back(truth * p), a_scaled.push_back(truth * (1.25 * p));
+  const auto rigid = align_pairs(a, b, {}, false);
+  ASSERT_TRUE(rigid.is_ok());
+  expect_near(rigid.value().rigid, truth, 1e-9, 1e-6);
+  const auto similar = align_pairs(a_scaled, b, {}, true);
+  ASSERT_TRUE(similar.is_ok());
+  EXPECT_NEAR(similar.value().scale, 1.25, 1e-9);
+  EXPECT_LT((similar.value() * b[3] - a_scaled[3]).norm(), 1e-9);
+}
+
+TEST(AlignPairs, NeverMirrors) {
+  const std::vector<Eigen::Vector3d> b{{0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {1, 1, 2}};
+  std::vector<Eigen::Vector3d> a;
+  for (const auto& p : b) a.emplace_back(p.x(), p.y(), -p.z());
+  const auto rigid = align_pairs(a, b, {}, false);
+  ASSERT_TRUE(rigid.is_ok());
+  EXPECT_NEAR(rigid.value().rigid.rotation.toRotationMatrix().determinant(), 1, 1e-9);
+}
+
+TEST(AlignPairs, RefusesWhatLeavesTheRotationOpen) {
+  const std::vector<Eigen::Vector3d> line{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {5, 5, 5}}, two{{0, 0, 0}, {1, 0, 0}};
+  EXPECT_FALSE(align_pairs(line, line, {}, false).is_ok());
+  EXPECT_FALSE(align_pairs(two, two, {}, false).is_ok());
+  const std::vector<Eigen::Vector3d> same(5, Eigen::Vector3d(1, 2, 3));
+  EXPECT_FALSE(align_pairs(same, same, {}, false).is_ok());
+}
+
+class Register : public ::testing::TestWithParam<int> {};
+
+TEST_P(Register, RecoversAKnownTransform) {
+  const ScannedFlat flat(40 + GetParam());
+  Random random(static_cast<std::uint32_t>(GetParam()));
+  const Rigid3 truth = motion(3 * random.direction(), 0.3 * random.direction());
+  CloudIndex cloud(flat.cloud_m);
+  const auto result = register_points(in_map(flat.landmarks_m, truth), &cloud, {}, {});
+  ASSERT_TRUE(result.is_ok()) << result.status().message();
+  EXPECT_TRUE(result.value().is_converged);
+  expect_near(result.value().T_cloud_map.rigid, truth, 0.002, 0.03);
+  EXPECT_EQ(result.value().T_cloud_map.scale, 1);
+  EXPECT_GT(result.value().weakest_share, 0.05);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Register, ::testing::Range(1, 6));
+
+TEST(RegisterPoints, ShrugsOffWhatIsNotInTheCloud) {
+  const ScannedFlat flat(1);
+  const Rigid3 truth = motion({1, -1, 2}, {0.1, 0.2, -0.1});
+  std::vector<Eigen::Vector3d> landmarks = flat.landmarks_m;
+  Random random(5);
+  for (std::size_t i = 0; i < landmarks.size(); i += 6) {  // chairs that were moved in
+    landmarks[i] = {random.uniform(3, 5), random.uniform(2, 4), random.uniform(0.1, 1)};
+  }
+  CloudIndex cloud(flat.cloud_m);
+  const auto result = register_points(in_map(landmarks, truth), &cloud, {}, {});
+  ASSERT_TRUE(result.is_ok());
+  expect_near(result.value().T_cloud_map.rigid, truth, 0.005, 0.1);
+}
+
+TEST(RegisterPoints, FindsTheScale) {
+  const ScannedFlat flat(1);
+  std::vector<Eigen::Vector3d> shrunk;
+  for (const auto& p : flat.landmarks_m) shrunk.push_back(p / 1.03);
+  CloudIndex cloud(flat.cloud_m);
+  RegistrationOptions options;
+  options.has_scale = true;
+  const auto result = register_points(shrunk, &cloud, {}, options);
+  ASSERT_TRUE(result.is_ok());
+  EXPECT_NEAR(result.value().T_cloud_map.scale, 1.03, 0.002);
+  EXPECT_GT(result.value().sigma_scale, 0);
+  EXPECT_LT(result.value().sigma_scale, 0.002);
+}
+
+TEST(RegisterPoints, KnowsThatACorridorWithoutEndsSlides) {
+  std::vector<Eigen::Vector3f> cloud_m;
+  std::vector<Eigen::Vector3d> landmarks;
+  Random random(3);
+  for (int i = 0; i < 60000; ++i) {
+    const double x = random.uniform(-10, 10), t = random.uniform(0, 2);
+    const Eigen::Vector3d p = i % 2 == 0 ? Eigen::Vector3d(x, t, 0) : Eigen::Vector3d(x, i % 4 == 1 ? 0 : 2, t);
+    cloud_m.push_back(p.cast<float>());
+    if (i % 20 == 0 && std::abs(x) < 8) landmarks.push_back(p);
+  }
+  CloudIndex cloud(cloud_m);
+  const auto result = register_points(landmarks, &cloud, {}, {});
+  ASSERT_TRUE(result.is_ok());
+  EXPECT_LT(result.value().weakest_share, 0.01);
+  EXPECT_GT(std::abs(result.value().weakest_direction.x()), 0.99);
+  EXPECT_LT(result.value().T_cloud_map.rigid.translation.norm(), 0.02);  // and does not run away
+}
+
+TEST(RegisterPoints, SaysThatNothingIsNear) {
+  const ScannedFlat flat(1);
+  CloudIndex cloud(flat.cloud_m);
+  const auto result = register_points(flat.landmarks_m, &cloud, {1, motion({0, 0, 0}, {100, 0, 0})}, {});
+  ASSERT_FALSE(result.is_ok());
+  EXPECT_EQ(result.status().code(), ErrorCode::kInvalid);
+}
+
+class Search : public ::testing::TestWithParam<int> {};
+
+TEST_P(Search, FindsAMapInAnyFrame) {
+  const ScannedFlat flat(7);
+  Random random(static_cast<std::uint32_t>(GetParam()));
+  const Rigid3 truth{random.rotation(), 30 * random.direction()};
+  const auto landmarks = in_map(flat.landmarks_m, truth);
+  const auto start = find_coarse_start(landmarks, flat.cloud_m, Eigen::Vector3d::Zero());
+  ASSERT_TRUE(start.is_ok());
+  EXPECT_FALSE(start.value().is_identity);
+  EXPECT_GT(start.value().rival_score_m, start.value().score_m);
+  CloudIndex cloud(flat.cloud_m);
+  RegistrationOptions options;
+  options.start_distance_m = 1.5;
+  const auto result = register_points(landmarks, &cloud, {1, start.value().T_cloud_map}, options);
+  ASSERT_TRUE(result.is_ok());
+  expect_near(result.value().T_cloud_map.rigid * truth.inverse(), Rigid3{}, 0.01, 0.1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Search, ::testing::Range(1, 9));
+
+TEST(CoarseStartTest, PrefersTheMapsOwnFrameWhereItFits) {
+  const ScannedFlat flat(7);
+  std::vector<Eigen::Vector3d> landmarks;
+  const Eigen::Vector3d origin(500000, 5400000, 100);  // the cloud is relative to it, the map is not
+  for (const auto& p : flat.landmarks_m) landmarks.push_back(p + origin);
+  const auto start = find_coarse_start(landmarks, flat.cloud_m, origin);
+  ASSERT_TRUE(start.is_ok());
+  EXPECT_TRUE(start.value().is_identity);
+  expect_near(start.value().T_cloud_map * Rigid3{Eigen::Quaterniond::Identity(), origin}, Rigid3{}, 1e-6, 1e-6);
+}
+
+}  // namespace
+}  // namespace camloc::map_tool

@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// camloc-map eval: a map against a laser scan, or against the depth images of a recording with trusted poses.
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include "drivers/camera_file.h"
+#include "drivers/image_writer.h"
+#include "drivers/sequence.h"
+#include "tools/camloc-map/cloud_file.h"
+#include "tools/camloc-map/commands.h"
+#include "tools/camloc-map/dense_cloud.h"
+#include "tools/camloc-map/eval_pictures.h"
+#include "tools/camloc-map/eval_report.h"
+#include "tools/camloc-map/evaluation.h"
+#include "tools/camloc-map/posed_frames.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/progress_line.h"
+#include "tools/common/trajectory_file.h"
+
+namespace camloc::map_tool {
+namespace {
+
+using tools::InterruptGuard;
+using tools::ProgressLine;
+
+constexpr const char* kFooter =
+    "Examples: against a scan; against the recording's own depth with poses from elsewhere\n"
+    "  camloc-map eval building.cmap --lidar scan.ply --points control.txt --out-dir report\n"
+    "  camloc-map eval kitchen.cmap --reference-sequence data/kitchen --camera config/cameras/7scenes.toml \\\n"
+    "      --trajectory kitchen.tum\n"
+    "Distances are given both ways, with coverage and scale: each alone can look perfect for a wrong map.\n"
+    "Exit code: 0 done (warnings are in the report), 1 failed, 2 wrong usage or configuration.";
+
+struct EvalArguments {
+  std::string map_path, lidar_path, points_path, trajectory_path, camera_path, out_dir;
+  PosedFramesRequest reference;
+  std::uint64_t frame_step = 5;
+  double lidar_unit_m = 1, voxel_m = 0.01;
+  EvaluationOptions options;
+  bool is_json = false;
+};
+
+Result<PointCloud> load_scan(const EvalArguments& arguments, ProgressLine* progress) {
+  const auto on_progress = [&](std::uint64_t done, std::uint64_t total) {
+    char text[64];
+    std::snprintf(text, sizeof text, "reading the cloud: %.0f of %.0f MB", static_cast<double>(done) / 1e6, static_cast<double>(total) / 1e6);
+    progress->say(text);
+    return !InterruptGuard::is_interrupted();
+  };
+  return read_cloud(arguments.lidar_path, {arguments.voxel_m, arguments.lidar_unit_m, 1}, on_progress);
+}
+
+/// The recorded camera at the stamps of the trajectory that the map was built with.
+Result<std::vector<PosePair>> match_poses(const std::string& trajectory_path, const PosedFrames& reference) {
+  const auto trajectory = read_tum_trajectory(trajectory_path);
+  if (!trajectory.is_ok()) return trajectory.status();
+  const auto sequence = read_sequence(reference.folder);
+  if (!sequence.is_ok()) return sequence.status();
+  std::vector<PosePair> pairs;
+  for (const auto& [index, T_reference_camera] : reference.T_map_camera_of_frame) {
+    if (const auto T_map_camera = pose_at(trajectory.value(), sequence.value().frames[index].stamp_ns)) pairs.push_back({*T_map_camera, T_reference_camera});
+  }
+  if (pairs.size() >= 3) return pairs;
+  return {ErrorCode::kInvalid, trajectory_path + ": only " + std::to_string(pairs.size()) + " of its poses are at the time of a frame with a reference pose; is it of this recording?"};
+}
+
+/// The dense cloud, and with --trajectory the pairs of poses.
+Result<PointCloud> load_reference(EvalArguments arguments, std::vector<PosePair>* poses, ProgressLine* progress) {
+  const auto camera = read_camera_file(arguments.camera_path);
+  if (!camera.is_ok()) return camera.status();
+  const auto all_frames = find_posed_frames(arguments.reference, camera.value());
+  if (!all_frames.is_ok()) return all_frames.status();
+  if (!arguments.trajectory_path.empty()) {
+    auto pairs = match_poses(arguments.trajectory_path, all_frames.value());
+    if (!pairs.is_ok()) return pairs.status();
+    *poses = std::move(pairs).value();
+  }
+  arguments.reference.include = "::" + std::to_string(arguments.frame_step);
+  const auto frames = find_posed_frames(arguments.reference, camera.value());
+  if (!frames.is_ok()) return frames.status();
+  DenseCloudOptions options;
+  options.voxel_m = arguments.voxel_m;
+  return fuse_dense_cloud(frames.value(), camera.value(), options, [&](std::uint64_t done, std::uint64_t total) {
+    progress->say("fusing depth images: " + std::to_string(done) + " of " + std::to_string(total));
+    return !InterruptGuard::is_interrupted();
+  });
+}
+
+Status write_files(const EvalArguments& arguments, const PointCloud& cloud, EvalSummary* summary) {
+  if (arguments.out_dir.empty()) return Status::ok();
+  const std::filesystem::path folder(arguments.out_dir);
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return {ErrorCode::kIo, "--out-dir " + arguments.out_dir + ": " + error.message()};
+  const std::string title = std::filesystem::path(arguments.map_path).filename().string() + " against " + std::filesystem::path(summary->cloud_name).filename().string();
+  const Evaluation& e = summary->evaluation;
+  const std::pair<const char*, ColorImage> pictures[] = {{"histogram.png", draw_histogram(e.distances, title)},
+                                                         {"top.png", draw_cloud_view(e, cloud, CloudView::kTop, title + ", from above")},
+                                                         {"side.png", draw_cloud_view(e, cloud, CloudView::kSide, title + ", from the side")}};
+  for (const auto& [name, image] : pictures) {
+    const std::string path = (folder / name).string();
+    if (const Status written = write_png(path, image); !written.is_ok()) return written;
+    summary->files.push_back(path);
+  }
+  const std::string path = (folder / "evaluation.json").string();
+  summary->files.push_back(path);
+  return tools::write_text_file(path, format_json(*summary));
+}
+
+Status evaluate(const EvalArguments& arguments, const MapView& map, EvalSummary* summary) {
+  const auto start = std::chrono::steady_clock::now();
+  const InterruptGuard guard;
+  ProgressLine progress(0);
+  EvaluationInput input;
+  input.map = &map;
+  if (!arguments.points_path.empty()) {
+    auto points = read_point_pairs(arguments.points_path);
+    if (!points.is_ok()) return points.status();
+    input.points = std::move(points).value();
+  }
+  const bool is_scan = !arguments.lidar_path.empty();
+  const auto cloud = is_scan ? load_scan(arguments, &progress) : load_reference(arguments, &input.poses, &progress);
+  if (!cloud.is_ok()) return cloud.status();
+  input.cloud = &cloud.value();
+  auto evaluation = evaluate_map(input, arguments.options, [&](const std::string& stage) {
+    progress.say(stage);
+    return !InterruptGuard::is_interrupted();
+  });
+  if (!evaluation.is_ok()) return evaluation.status();
+  if (map.is_damaged()) return {ErrorCode::kCorrupt, arguments.map_path + ": was truncated while it was read"};
+  summary->evaluation = std::move(evaluation).value();
+  summary->map_path = arguments.map_path;
+  summary->cloud_name = is_scan ? arguments.lidar_path : arguments.reference.sequence;
+  summary->num_read = cloud.value().num_read;
+  summary->num_invalid = cloud.value().num_invalid;
+  summary->num_points = cloud.value().points_m.size();
+  summary->voxel_m = arguments.voxel_m;
+  summary->min_observations = arguments.options.min_observations;
+  progress.say("drawing ...");
+  const Status written = write_files(arguments, cloud.value(), summary);
+  summary->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return written;
+}
+
+Status check(const EvalArguments& arguments) {
+  if (arguments.lidar_path.empty() == arguments.reference.sequence.empty()) {
+    return {ErrorCode::kInvalid, "give a cloud to compare with: either --lidar CLOUD, or --reference-sequence DIR with --camera FILE"};
+  }
+  if (!arguments.reference.sequence.empty() && arguments.camera_path.empty()) return {ErrorCode::kInvalid, "--reference-sequence needs --camera FILE"};
+  if (!arguments.trajectory_path.empty() && arguments.reference.sequence.empty()) {
+    return {ErrorCode::kInvalid, "--trajectory is compared with the poses of a --reference-sequence, which is missing"};
+  }
+  if (!arguments.out_dir.empty() && std::filesystem::exists(arguments.out_dir) && !std::filesystem::is_directory(arguments.out_dir)) {
+    return {ErrorCode::kInvalid, "--out-dir " + arguments.out_dir + ": is a file; give a folder"};
+  }
+  return Status::ok();
+}
+
+/// Bad arguments and unreadable formats are the user's to correct; the rest failed.
+int exit_code_of(const Status& status) {
+  return status.code() == ErrorCode::kIo || status.code() == ErrorCode::kUnavailable ? 1 : 2;
+}
+
+int run(const EvalArguments& arguments) {
+  if (const Status checked = check(arguments); !checked.is_ok()) return report_error(checked, 2);
+  const auto map = MapView::open(arguments.map_path);
+  if (!map.is_ok()) return report_error(map.status(), exit_code_of(map.status()));
+  EvalSummary summary;
+  if (const Status done = evaluate(arguments, map.value(), &summary); !done.is_ok()) return report_error(done, exit_code_of(done));
+  const std::string text = arguments.is_json ? format_json(summary) : format_table(summary);
+  return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0 ? 0 : 1;
+}
+
+void add_reference_options(CLI::App* command, EvalArguments* arguments) {
+  command->add_option("--lidar", arguments->lidar_path, "Scan to compare with: PLY, PCD, LAS, or text (XYZ, PTS, CSV)");
+  const std::map<std::string, double> units{{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"ft", 0.3048}};
+  command->add_option("--lidar-unit", arguments->lidar_unit_m, "Unit of the scan: m, cm, mm, ft (default m)")->transform(CLI::CheckedTransformer(units));
+  command->add_option("--reference-sequence", arguments->reference.sequence,
+                      "Instead of a scan: recording whose depth images and poses make a dense cloud (TUM RGB-D or 7-Scenes)");
+  command->add_option("--camera", arguments->camera_path, "Calibration of that recording");
+  command->add_option("--poses", arguments->reference.poses, "Its poses: 'embedded' (default) or a trajectory file in TUM format");
+  command->add_option("--frame-step", arguments->frame_step, "Every so many of its frames (default 5)")->check(CLI::Range(1, 100000));
+  command->add_option("--trajectory", arguments->trajectory_path, "Trajectory in the map's frame, TUM format, of the same recording: the start of the alignment");
+}
+
+void add_alignment_options(CLI::App* command, EvalArguments* arguments) {
+  command->add_option("--points", arguments->points_path, "Control points, a line each: name map_x map_y map_z cloud_x cloud_y cloud_z [sigma]");
+  const std::map<std::string, AlignStart> starts{{"auto", AlignStart::kAuto},     {"points", AlignStart::kPoints}, {"trajectory", AlignStart::kTrajectory},
+                                                 {"datum", AlignStart::kDatum},   {"none", AlignStart::kNone},     {"search", AlignStart::kSearch}};
+  command
+      ->add_option("--align", arguments->options.start,
+                   "Where the alignment starts: points, trajectory, datum (of the map), none (frames are equal), search; auto (default): the "
+                   "first of these that is given, else search")
+      ->transform(CLI::CheckedTransformer(starts));
+  command->add_flag("!--no-icp", arguments->options.has_icp, "Measure at the start, without fitting the surfaces");
+  command->add_option("--trim", arguments->options.trim, "Share of the closest correspondences that ICP uses (default 0.9)")->check(CLI::Range(0.1, 1.0));
+  command->add_option("--max-distance", arguments->options.max_distance_m, "Farther from the cloud a landmark is outside of the scan, metres (default 0.5)")
+      ->check(CLI::Range(0.01, 100.0));
+  command->add_option("--voxel", arguments->voxel_m, "Thin the cloud to a point a voxel of this size, metres (default 0.01)")->check(CLI::Range(0.001, 1.0));
+  command->add_option("--min-observations", arguments->options.min_observations, "Landmarks seen by fewer frames are left out (default 2)");
+}
+
+}  // namespace
+
+void add_eval_command(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<EvalArguments>();
+  CLI::App* command = app.add_subcommand("eval", "Compares a map with a laser scan: distances both ways, coverage, scale.");
+  command->footer(kFooter);
+  command->add_option("map", arguments->map_path, "Map file")->required();
+  add_reference_options(command, arguments.get());
+  add_alignment_options(command, arguments.get());
+  command->add_option("--out-dir", arguments->out_dir, "Folder for histogram.png, top.png, side.png and evaluation.json");
+  command->add_flag("--json", arguments->is_json, "Print the report as JSON");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace camloc::map_tool

@@ -1,0 +1,294 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/camloc-map/evaluation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <numeric>
+
+namespace camloc::map_tool {
+namespace {
+
+constexpr std::size_t kMaxFinalPoints = 50000;     // of the last registration; more change nothing
+constexpr double kScaleTolerance = 0.01;
+constexpr double kPoseLeverM = 1.0;                // what a rotation weighs against a position between two trajectories
+
+[[gnu::format(printf, 1, 2)]] std::string text_of(const char* format, ...) {
+  char text[512];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return text;
+}
+
+struct MapPoints {
+  std::vector<Eigen::Vector3d> landmarks;   ///< with enough observations
+  std::vector<Rigid3> T_map_keyframe;
+};
+
+MapPoints points_of(const MapView& map, std::uint32_t min_observations) {
+  MapPoints points;
+  for (const auto& submap : map.submaps()) {
+    for (const auto& landmark : map.landmarks().subspan(submap.first_landmark, submap.num_landmarks)) {
+      if (landmark.num_observations < min_observations) continue;
+      points.landmarks.push_back(MapView::position_m(submap, landmark).cast<double>());
+    }
+  }
+  for (std::uint32_t i = 0; i < map.keyframes().size(); ++i) points.T_map_keyframe.push_back(map.keyframe_pose(i));
+  return points;
+}
+
+Status check_points(const MapView& map, const MapPoints& points, std::uint32_t min_observations) {
+  if (map.landmarks().empty()) return {ErrorCode::kInvalid, map.info().path + ": has no landmarks, there is nothing to evaluate"};
+  if (!points.landmarks.empty()) return Status::ok();
+  return {ErrorCode::kInvalid, text_of("%s: none of its %zu landmarks was seen at least %u times; lower --min-observations", map.info().path.c_str(),
+                                       map.landmarks().size(), min_observations)};
+}
+
+Eigen::Vector3d extent_of(const std::vector<Eigen::Vector3d>& points) {
+  CloudAccumulator accumulator({0.05, 1, 1});
+  for (const Eigen::Vector3d& p : points) accumulator.add(p);
+  const auto bounds = accumulator.finish().bounds_m();
+  return bounds[1] - bounds[0];
+}
+
+/// Scanners and CAD programs like millimetres.
+Status check_unit(const MapPoints& points, const PointCloud& cloud) {
+  const auto bounds = cloud.bounds_m();
+  const double cloud_m = (bounds[1] - bounds[0]).norm(), map_m = extent_of(points.landmarks).norm();
+  if (!(cloud_m > 300 * map_m && cloud_m < 5000 * map_m && cloud_m > 1000)) return Status::ok();
+  return {ErrorCode::kInvalid, text_of("the cloud is %.0f m wide and the map %.1f m: the cloud seems to be in millimetres; say so with --lidar-unit mm", cloud_m, map_m)};
+}
+
+Result<Similarity3> align_points(const std::vector<PointPair>& pairs, const Eigen::Vector3d& origin_m, bool has_scale) {
+  std::vector<Eigen::Vector3d> cloud, map;
+  std::vector<double> weights;
+  for (const PointPair& pair : pairs) {
+    cloud.push_back(pair.p_cloud - origin_m);
+    map.push_back(pair.p_map);
+    weights.push_back(1 / (pair.sigma_m * pair.sigma_m));
+  }
+  const auto aligned = align_pairs(cloud, map, weights, has_scale);
+  if (!aligned.is_ok()) return aligned.status().with_context("control points");
+  return aligned;
+}
+
+/// Positions and, with a lever arm, viewing directions: also a camera that only turned can be aligned.
+Result<Similarity3> align_poses(const std::vector<PosePair>& pairs, const Eigen::Vector3d& origin_m, bool has_scale) {
+  std::vector<Eigen::Vector3d> cloud, map;
+  for (const PosePair& pair : pairs) {
+    cloud.push_back(pair.T_reference_camera.translation - origin_m);
+    map.push_back(pair.T_map_camera.translation);
+    for (int axis = 0; axis < 3 && !has_scale; ++axis) {
+      const Eigen::Vector3d tip = kPoseLeverM * Eigen::Vector3d::Unit(axis);
+      cloud.push_back(pair.T_reference_camera * tip - origin_m);
+      map.push_back(pair.T_map_camera * tip);
+    }
+  }
+  const auto aligned = align_pairs(cloud, map, {}, has_scale);
+  if (!aligned.is_ok()) return aligned.status().with_context("poses");
+  return aligned;
+}
+
+AlignStart choose_start(const EvaluationInput& input, AlignStart wish) {
+  if (wish != AlignStart::kAuto) return wish;
+  if (!input.points.empty()) return AlignStart::kPoints;
+  if (!input.poses.empty()) return AlignStart::kTrajectory;
+  return input.map->info().wcs ? AlignStart::kDatum : AlignStart::kSearch;
+}
+
+/// T_cloud_map relative to the cloud's origin.
+Result<Rigid3> find_start(const EvaluationInput& input, const MapPoints& points, Evaluation* result) {
+  const Eigen::Vector3d& origin_m = input.cloud->origin_m;
+  const auto relative = [&](Rigid3 T) { T.translation -= origin_m; return T; };
+  switch (result->start) {
+    case AlignStart::kPoints: {
+      if (input.points.empty()) return {ErrorCode::kInvalid, "--align points needs control points: --points FILE"};
+      const auto aligned = align_points(input.points, origin_m, false);
+      return aligned.is_ok() ? Result<Rigid3>(aligned.value().rigid) : Result<Rigid3>(aligned.status());
+    }
+    case AlignStart::kTrajectory: {
+      if (input.poses.empty()) return {ErrorCode::kInvalid, "--align trajectory needs --reference-sequence and --trajectory FILE"};
+      const auto aligned = align_poses(input.poses, origin_m, false);
+      return aligned.is_ok() ? Result<Rigid3>(aligned.value().rigid) : Result<Rigid3>(aligned.status());
+    }
+    case AlignStart::kDatum:
+      if (!input.map->info().wcs) return {ErrorCode::kInvalid, "--align datum: " + input.map->info().path + " has no datum; camloc map georef gives it one"};
+      return relative(input.map->info().wcs->T_wcs_map);
+    case AlignStart::kAuto: case AlignStart::kSearch: {
+      const auto found = find_coarse_start(points.landmarks, input.cloud->points_m, origin_m);
+      if (!found.is_ok()) return found.status();
+      result->search = found.value();
+      return found.value().T_cloud_map;
+    }
+    case AlignStart::kNone: break;
+  }
+  return relative(Rigid3{});
+}
+
+double start_distance_of(AlignStart start, const EvaluationOptions& options) {
+  const double found_m = start == AlignStart::kSearch ? 1.5 : start == AlignStart::kDatum || start == AlignStart::kTrajectory ? 1.0 : 0.5;
+  return std::max(found_m, options.max_distance_m);
+}
+
+/// Trimmed ICP on a part of the landmarks, then on more of them.
+Result<Registration> refine(const MapPoints& points, const Rigid3& start, const EvaluationOptions& options, AlignStart kind, CloudIndex* cloud) {
+  RegistrationOptions registration;
+  registration.trim = options.trim;
+  registration.max_distance_m = options.max_distance_m;
+  registration.start_distance_m = start_distance_of(kind, options);
+  auto coarse = register_points(points.landmarks, cloud, {1, start}, registration);
+  if (!coarse.is_ok() || points.landmarks.size() <= registration.max_points) return coarse;
+  registration.start_distance_m = registration.max_distance_m;
+  registration.max_points = kMaxFinalPoints;
+  registration.max_iterations = 20;
+  return register_points(points.landmarks, cloud, coarse.value().T_cloud_map, registration);
+}
+
+void check_scale(const EvaluationInput& input, const MapPoints& points, const Rigid3& T_cloud_map, const EvaluationOptions& options, CloudIndex* cloud,
+                 Evaluation* result) {
+  RegistrationOptions registration;
+  registration.has_scale = true;
+  registration.trim = options.trim;
+  registration.max_distance_m = registration.start_distance_m = options.max_distance_m;
+  registration.max_iterations = 40;
+  if (const auto similar = register_points(points.landmarks, cloud, {1, T_cloud_map}, registration); similar.is_ok()) {
+    result->scale = similar.value().T_cloud_map.scale;
+    result->sigma_scale = similar.value().sigma_scale;
+  }
+  if (input.points.size() >= 3) {
+    if (const auto similar = align_points(input.points, input.cloud->origin_m, true); similar.is_ok()) result->points_scale = similar.value().scale;
+  }
+  if (input.poses.size() >= 3) {
+    if (const auto similar = align_poses(input.poses, input.cloud->origin_m, true); similar.is_ok()) result->poses_scale = similar.value().scale;
+  }
+}
+
+void measure_residuals(const EvaluationInput& input, const Rigid3& T_cloud_map, Evaluation* result) {
+  if (input.points.empty()) return;
+  const auto aligned = align_points(input.points, input.cloud->origin_m, false);
+  for (const PointPair& pair : input.points) {
+    const Eigen::Vector3d p_cloud = pair.p_cloud - input.cloud->origin_m;
+    const Eigen::Vector3d final_m = T_cloud_map * pair.p_map - p_cloud;
+    result->residuals.push_back({pair.name, pair.sigma_m, aligned.is_ok() ? Eigen::Vector3d(aligned.value() * pair.p_map - p_cloud) : final_m, final_m});
+  }
+}
+
+void warn_about_scale(const Evaluation& e, std::vector<std::string>* warnings) {
+  const auto warn = [&](const std::optional<double>& scale, const char* how) {
+    if (!scale || std::abs(*scale - 1) <= kScaleTolerance) return;
+    warnings->push_back(text_of("SCALE: by %s the map would have to be multiplied by %.4f to fit the cloud; expected 1 +- %.2f. The distances above deceive", how,
+                                *scale, kScaleTolerance));
+  };
+  warn(e.scale, "ICP");
+  warn(e.points_scale, "the control points");
+  warn(e.poses_scale, "the camera positions");
+  if (const double ratio = e.distances.volume_ratio(); ratio < 0.2 || ratio > 5) {
+    warnings->push_back(text_of("VOLUME: the map's box is %.3g times the cloud's; either %s, or its scale is wrong. Control points would tell", ratio,
+                                ratio < 1 ? "it holds a small part of the scan" : "the scan holds a small part of the map"));
+  }
+}
+
+void warn_about_points(const Evaluation& e, std::vector<std::string>* warnings) {
+  std::vector<double> sizes;
+  for (const PointResidual& r : e.residuals) sizes.push_back(r.aligned_m.norm());
+  if (sizes.empty()) return;
+  const auto worst = std::max_element(sizes.begin(), sizes.end());
+  const PointResidual& r = e.residuals[static_cast<std::size_t>(worst - sizes.begin())];
+  if (*worst > std::max(0.05, 5 * r.sigma_m)) {
+    warnings->push_back(text_of("POINTS: control point %s is off by %.3f m; check it for a typo or swapped axes", r.name.c_str(), *worst));
+  }
+}
+
+void warn_about_alignment(const Evaluation& e, std::vector<std::string>* warnings) {
+  if (e.search && !e.search->is_identity && e.search->rival_score_m < 1.25 * e.search->score_m) {
+    warnings->push_back(text_of("START: found by search, and the building looks nearly as good from elsewhere (%.3f and %.3f m); give control points to be sure",
+                                e.search->score_m, e.search->rival_score_m));
+  }
+  const double share_outside = static_cast<double>(e.distances.num_outside) / static_cast<double>(std::max<std::uint64_t>(1, e.num_used));
+  if (share_outside > 0.2) {
+    warnings->push_back(text_of("OVERLAP: %.0f %% of the landmarks have no point of the cloud near; the alignment is wrong, or the scan lacks rooms", 100 * share_outside));
+  }
+  if (!e.registration) return;
+  if (e.start == AlignStart::kPoints && e.moved_m > 0.1) {
+    warnings->push_back(text_of("POINTS: the surfaces put the map %.2f m away from where the control points put it; which of the two is wrong?", e.moved_m));
+  }
+  if (e.registration->weakest_share < 0.01) {
+    const Eigen::Vector3d& d = e.registration->weakest_direction;
+    warnings->push_back(text_of("SLIDING: nearly no surface stands across (%.2f, %.2f, %.2f); the map may slide along there unnoticed", d.x(), d.y(), d.z()));
+  }
+  if (!e.registration->is_converged) warnings->push_back("ICP: did not settle; the distances may improve with another start");
+}
+
+}  // namespace
+
+const char* describe(AlignStart start) {
+  switch (start) {
+    case AlignStart::kAuto: return "automatic";
+    case AlignStart::kPoints: return "control points";
+    case AlignStart::kTrajectory: return "trajectory";
+    case AlignStart::kDatum: return "datum of the map";
+    case AlignStart::kNone: return "none (frames taken as equal)";
+    case AlignStart::kSearch: return "search";
+  }
+  return "";
+}
+
+Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOptions& options, const std::function<bool(const std::string&)>& say) {
+  const auto is_stopped = [&](const char* stage) { return say && !say(stage); };
+  const Status stopped(ErrorCode::kIo, "interrupted");
+  const MapPoints points = points_of(*input.map, options.min_observations);
+  if (const Status checked = check_points(*input.map, points, options.min_observations); !checked.is_ok()) return checked;
+  if (const Status checked = check_unit(points, *input.cloud); !checked.is_ok()) return checked;
+  Evaluation result;
+  result.num_landmarks = input.map->landmarks().size();
+  result.num_used = points.landmarks.size();
+  result.num_keyframes = points.T_map_keyframe.size();
+
+  if (is_stopped("looking for a start ...")) return stopped;
+  result.start = choose_start(input, options.start);
+  const auto start = find_start(input, points, &result);
+  if (!start.is_ok()) return start.status();
+  Rigid3 T_cloud_map = start.value();
+
+  if (is_stopped("indexing the cloud ...")) return stopped;
+  CloudIndex cloud(input.cloud->points_m);
+  if (options.has_icp) {
+    if (is_stopped("aligning ...")) return stopped;
+    const auto refined = refine(points, T_cloud_map, options, result.start, &cloud);
+    if (!refined.is_ok()) {
+      return refined.status().with_context("map and cloud do not overlap (start: " + std::string(describe(result.start)) + ")");
+    }
+    result.registration = refined.value();
+    T_cloud_map = refined.value().T_cloud_map.rigid;
+  }
+  if (is_stopped("checking the scale ...")) return stopped;
+  check_scale(input, points, T_cloud_map, options, &cloud, &result);
+
+  if (is_stopped("measuring distances ...")) return stopped;
+  for (const Eigen::Vector3d& p : points.landmarks) result.landmarks_m.push_back(T_cloud_map * p);
+  for (const Rigid3& T : points.T_map_keyframe) {
+    result.T_cloud_keyframe.push_back(T_cloud_map * T);
+    result.keyframes_m.push_back(result.T_cloud_keyframe.back().translation);
+  }
+  DistanceOptions distance = options.distance;
+  distance.max_distance_m = result.max_distance_m = options.max_distance_m;
+  result.distances = measure_distances(result.landmarks_m, result.keyframes_m, &cloud, distance);
+  measure_residuals(input, T_cloud_map, &result);
+  const auto absolute = [&](Rigid3 T) { T.translation += input.cloud->origin_m; return T; };
+  result.T_cloud_map_start = absolute(start.value());
+  result.T_cloud_map = absolute(T_cloud_map);
+  const Eigen::Vector3d center =
+      std::accumulate(points.landmarks.begin(), points.landmarks.end(), Eigen::Vector3d(0, 0, 0)) / static_cast<double>(points.landmarks.size());
+  result.moved_m = (T_cloud_map * center - start.value() * center).norm();
+  result.moved_rad = rotation_distance_rad(T_cloud_map.rotation, start.value().rotation);
+  warn_about_scale(result, &result.warnings);
+  warn_about_points(result, &result.warnings);
+  warn_about_alignment(result, &result.warnings);
+  return result;
+}
+
+}  // namespace camloc::map_tool

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// A cloud of surface points, thinned to one point a voxel while it is read, so that a scan of any size fits into memory.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace camloc::map_tool {
+
+/// Points relative to an origin: survey coordinates have seven digits before the point, a float holds seven in all.
+struct PointCloud {
+  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();  ///< p_cloud = origin_m + points_m[i]
+  std::vector<Eigen::Vector3f> points_m;
+  std::uint64_t num_read = 0;     ///< with the invalid ones
+  std::uint64_t num_invalid = 0;  ///< not finite, marked as withheld, or absurdly far from the others
+
+  /// 0.5th and 99.5th percentile along each axis, relative to the origin: a stray return must not decide.
+  [[nodiscard]] std::array<Eigen::Vector3d, 2> bounds_m() const;
+};
+
+struct CloudOptions {
+  double voxel_m = 0.01;          ///< edge of the voxels; a point of a voxel is the mean of what fell into it
+  double unit_m = 1;              ///< metres per unit of what is added
+  std::uint32_t min_points = 1;   ///< voxels with fewer points are dropped
+};
+
+/// Takes points one by one. Memory: about twice what is kept, plus a few tens of megabytes. The same points in the same order
+/// give the same bits.
+class CloudAccumulator {
+ public:
+  explicit CloudAccumulator(const CloudOptions& options);
+  /// In units of the file. Not finite ones are counted as invalid.
+  void add(const Eigen::Vector3d& p);
+  void add_invalid() { ++cloud_.num_read, ++cloud_.num_invalid; }
+  /// The cloud; the accumulator is empty then.
+  [[nodiscard]] PointCloud finish();
+
+ private:
+  struct Voxel {
+    std::array<std::int32_t, 3> cell;
+    std::uint32_t count;
+    Eigen::Vector3f sum_m;   ///< of positions relative to the cell's lower corner
+  };
+
+  void start();
+  void store(const Eigen::Vector3d& p_m);
+  void compact();
+
+  CloudOptions options_;
+  PointCloud cloud_;
+  std::vector<Eigen::Vector3d> first_points_m_;  ///< until the origin is chosen
+  bool is_started_ = false;
+  std::vector<Voxel> voxels_;                    ///< [0, num_compact_) sorted, one a cell; then as they came
+  std::size_t num_compact_ = 0;
+  std::size_t compact_at_ = 0;
+};
+
+}  // namespace camloc::map_tool
