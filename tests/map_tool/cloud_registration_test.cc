@@ -30,37 +30,6 @@ void expect_near(const Rigid3& T, const Rigid3& expected, double tolerance_m, do
   EXPECT_LT(rotation_distance_rad(T.rotation, expected.rotation), tolerance_deg * kDegree);
 }
 
-TEST(AlignPairs, RecoversASimilarity) {
-  const Rigid3 truth = motion({20, -50, 130}, {3, -2, 10});
-  const std::vector<Eigen::Vector3d> b{{0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {1, 1, 2}};
-  std::vector<Eigen::Vector3d> a, a_scaled;
-  for (const auto& p : b) a.push_back(truth * p), a_scaled.push_back(truth * (1.25 * p));
-  const auto rigid = align_pairs(a, b, {}, false);
-  ASSERT_TRUE(rigid.is_ok());
-  expect_near(rigid.value().rigid, truth, 1e-9, 1e-6);
-  const auto similar = align_pairs(a_scaled, b, {}, true);
-  ASSERT_TRUE(similar.is_ok());
-  EXPECT_NEAR(similar.value().scale, 1.25, 1e-9);
-  EXPECT_LT((similar.value() * b[3] - a_scaled[3]).norm(), 1e-9);
-}
-
-TEST(AlignPairs, NeverMirrors) {
-  const std::vector<Eigen::Vector3d> b{{0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {1, 1, 2}};
-  std::vector<Eigen::Vector3d> a;
-  for (const auto& p : b) a.emplace_back(p.x(), p.y(), -p.z());
-  const auto rigid = align_pairs(a, b, {}, false);
-  ASSERT_TRUE(rigid.is_ok());
-  EXPECT_NEAR(rigid.value().rigid.rotation.toRotationMatrix().determinant(), 1, 1e-9);
-}
-
-TEST(AlignPairs, RefusesWhatLeavesTheRotationOpen) {
-  const std::vector<Eigen::Vector3d> line{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {5, 5, 5}}, two{{0, 0, 0}, {1, 0, 0}};
-  EXPECT_FALSE(align_pairs(line, line, {}, false).is_ok());
-  EXPECT_FALSE(align_pairs(two, two, {}, false).is_ok());
-  const std::vector<Eigen::Vector3d> same(5, Eigen::Vector3d(1, 2, 3));
-  EXPECT_FALSE(align_pairs(same, same, {}, false).is_ok());
-}
-
 class Register : public ::testing::TestWithParam<int> {};
 
 TEST_P(Register, RecoversAKnownTransform) {

@@ -4,10 +4,8 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace camloc::map_tool {
 namespace {
@@ -127,40 +125,6 @@ void describe(const Equations& equations, bool has_scale, std::size_t num_pairs,
 
 }  // namespace
 
-Result<Similarity3> align_pairs(std::span<const Eigen::Vector3d> points_a, std::span<const Eigen::Vector3d> points_b, std::span<const double> weights,
-                                bool has_scale) {
-  if (points_a.size() != points_b.size() || points_a.size() < 3) {
-    return {ErrorCode::kInvalid, std::to_string(std::min(points_a.size(), points_b.size())) + " pairs of points; at least 3 are needed"};
-  }
-  const auto weight = [&](std::size_t i) { return weights.empty() ? 1.0 : weights[i]; };
-  double sum = 0;
-  Eigen::Vector3d mean_a = Eigen::Vector3d::Zero(), mean_b = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < points_a.size(); ++i) {
-    sum += weight(i);
-    mean_a += weight(i) * points_a[i];
-    mean_b += weight(i) * points_b[i];
-  }
-  mean_a /= sum;
-  mean_b /= sum;
-  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
-  double spread_b = 0;
-  for (std::size_t i = 0; i < points_a.size(); ++i) {
-    products += weight(i) * (points_a[i] - mean_a) * (points_b[i] - mean_b).transpose();
-    spread_b += weight(i) * (points_b[i] - mean_b).squaredNorm();
-  }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(products, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Vector3d values = svd.singularValues();
-  if (!values.allFinite() || !(values[1] > 1e-6 * values[0]) || !(spread_b > 0)) {
-    return {ErrorCode::kInvalid, "the points lie on one line, which leaves the rotation about it open; add one aside"};
-  }
-  Eigen::Vector3d signs(1, 1, svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1);
-  Similarity3 result;
-  result.rigid.rotation = Eigen::Quaterniond(Eigen::Matrix3d(svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose())).normalized();
-  if (has_scale) result.scale = values.dot(signs) / spread_b;
-  result.rigid.translation = mean_a - result.scale * (result.rigid.rotation * mean_b);
-  return result;
-}
-
 Result<Registration> register_points(std::span<const Eigen::Vector3d> points_map, CloudIndex* cloud, const Similarity3& start,
                                      const RegistrationOptions& options) {
   const std::vector<Eigen::Vector3d> points = choose(points_map, options.max_points);
@@ -179,8 +143,8 @@ Result<Registration> register_points(std::span<const Eigen::Vector3d> points_map
     const Equations equations = build_equations(pairs, cloud, center);
     const Vector7d step = take_step(equations, center, options.has_scale, &result.T_cloud_map);
     describe(equations, options.has_scale, pairs.size(), &result);
-    const auto is_below = [&](double limit_m, double limit_rad) {
-      return step.head<3>().norm() < limit_rad && step.segment<3>(3).norm() < limit_m && std::abs(step[6]) < limit_rad;
+    const auto is_below = [&](double step_m, double step_rad) {
+      return step.head<3>().norm() < step_rad && step.segment<3>(3).norm() < step_m && std::abs(step[6]) < step_rad;
     };
     const bool is_still = is_below(kStillM, kStillRad);
     if (trim < 1 && ((is_still && limit_m <= options.max_distance_m) || result.num_iterations >= options.max_iterations - kFinalIterations)) {

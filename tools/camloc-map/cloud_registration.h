@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Lays the points of a map onto a cloud: from pairs of points, by trimmed iterative closest points, and without any hint.
+// Lays the points of a map onto a cloud: by trimmed iterative closest points, and without any hint.
 // `map` is the frame of the landmarks, `cloud` that of a PointCloud relative to its origin.
 #pragma once
 
@@ -22,12 +22,6 @@ struct Similarity3 {
   Rigid3 rigid;
   [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& p) const { return scale * (rigid.rotation * p) + rigid.translation; }
 };
-
-/// Least squares over pairs (Umeyama, "Least-squares estimation of transformation parameters between two point patterns", 1991);
-/// without `has_scale` the scale is 1. `weights` are empty or one a pair. kInvalid: fewer than three pairs, or all on one
-/// line, so that the rotation about it is not determined.
-[[nodiscard]] Result<Similarity3> align_pairs(std::span<const Eigen::Vector3d> points_a, std::span<const Eigen::Vector3d> points_b,
-                                              std::span<const double> weights, bool has_scale);
 
 struct RegistrationOptions {
   double trim = 0.9;             ///< share of the correspondences that is used, the closest

@@ -37,7 +37,7 @@ constexpr const char* kFooter =
     "Exit code: 0 done (warnings are in the report), 1 failed, 2 wrong usage or configuration.";
 
 struct EvalArguments {
-  std::string map_path, lidar_path, points_path, trajectory_path, camera_path, out_dir;
+  std::string map_path, lidar_path, points_path, trajectory_path, reference_trajectory_path, camera_path, out_dir;
   PosedFramesRequest reference;
   std::uint64_t frame_step = 5;
   double lidar_unit_m = 1, voxel_m = 0.01;
@@ -55,18 +55,26 @@ Result<PointCloud> load_scan(const EvalArguments& arguments, ProgressLine* progr
   return read_cloud(arguments.lidar_path, {arguments.voxel_m, arguments.lidar_unit_m, 1}, on_progress);
 }
 
-/// The recorded camera at the stamps of the trajectory that the map was built with.
-Result<std::vector<PosePair>> match_poses(const std::string& trajectory_path, const PosedFrames& reference) {
+/// The camera in the map and in the frame of the cloud at the same times: those of the trajectory of the map.
+Result<std::vector<PosePair>> match_poses(const std::string& trajectory_path, const std::vector<StampedPose>& reference) {
   const auto trajectory = read_tum_trajectory(trajectory_path);
   if (!trajectory.is_ok()) return trajectory.status();
-  const auto sequence = read_sequence(reference.folder);
-  if (!sequence.is_ok()) return sequence.status();
   std::vector<PosePair> pairs;
-  for (const auto& [index, T_reference_camera] : reference.T_map_camera_of_frame) {
-    if (const auto T_map_camera = pose_at(trajectory.value(), sequence.value().frames[index].stamp_ns)) pairs.push_back({*T_map_camera, T_reference_camera});
+  for (const StampedPose& pose : trajectory.value()) {
+    if (const auto T_reference_camera = pose_at(reference, pose.stamp_ns)) pairs.push_back({pose.T_world_camera, *T_reference_camera});
   }
   if (pairs.size() >= 3) return pairs;
-  return {ErrorCode::kInvalid, trajectory_path + ": only " + std::to_string(pairs.size()) + " of its poses are at the time of a frame with a reference pose; is it of this recording?"};
+  return {ErrorCode::kInvalid, trajectory_path + ": only " + std::to_string(pairs.size()) + " of its " + std::to_string(trajectory.value().size()) +
+                                   " poses are at the time of a reference pose; is it of this recording?"};
+}
+
+/// The colour camera's reference poses of a recording, in time.
+Result<std::vector<StampedPose>> stamped(const PosedFrames& frames) {
+  const auto sequence = read_sequence(frames.folder);
+  if (!sequence.is_ok()) return sequence.status();
+  std::vector<StampedPose> poses;
+  for (const auto& [index, T_map_camera] : frames.T_map_camera_of_frame) poses.push_back({sequence.value().frames[index].stamp_ns, T_map_camera});
+  return poses;
 }
 
 /// The dense cloud, and with --trajectory the pairs of poses.
@@ -76,7 +84,9 @@ Result<PointCloud> load_reference(EvalArguments arguments, std::vector<PosePair>
   const auto all_frames = find_posed_frames(arguments.reference, camera.value());
   if (!all_frames.is_ok()) return all_frames.status();
   if (!arguments.trajectory_path.empty()) {
-    auto pairs = match_poses(arguments.trajectory_path, all_frames.value());
+    const auto reference = stamped(all_frames.value());
+    if (!reference.is_ok()) return reference.status();
+    auto pairs = match_poses(arguments.trajectory_path, reference.value());
     if (!pairs.is_ok()) return pairs.status();
     *poses = std::move(pairs).value();
   }
@@ -112,17 +122,28 @@ Status write_files(const EvalArguments& arguments, const PointCloud& cloud, Eval
   return tools::write_text_file(path, format_json(*summary));
 }
 
+Status load_alignment(const EvalArguments& arguments, EvaluationInput* input) {
+  if (!arguments.points_path.empty()) {
+    auto points = read_point_pairs(arguments.points_path);
+    if (!points.is_ok()) return points.status();
+    input->points = std::move(points).value();
+  }
+  if (arguments.reference_trajectory_path.empty()) return Status::ok();
+  const auto reference = read_tum_trajectory(arguments.reference_trajectory_path);
+  if (!reference.is_ok()) return reference.status();
+  auto poses = match_poses(arguments.trajectory_path, reference.value());
+  if (!poses.is_ok()) return poses.status();
+  input->poses = std::move(poses).value();
+  return Status::ok();
+}
+
 Status evaluate(const EvalArguments& arguments, const MapView& map, EvalSummary* summary) {
   const auto start = std::chrono::steady_clock::now();
   const InterruptGuard guard;
   ProgressLine progress(0);
   EvaluationInput input;
   input.map = &map;
-  if (!arguments.points_path.empty()) {
-    auto points = read_point_pairs(arguments.points_path);
-    if (!points.is_ok()) return points.status();
-    input.points = std::move(points).value();
-  }
+  if (const Status loaded = load_alignment(arguments, &input); !loaded.is_ok()) return loaded;
   const bool is_scan = !arguments.lidar_path.empty();
   const auto cloud = is_scan ? load_scan(arguments, &progress) : load_reference(arguments, &input.poses, &progress);
   if (!cloud.is_ok()) return cloud.status();
@@ -152,8 +173,12 @@ Status check(const EvalArguments& arguments) {
     return {ErrorCode::kInvalid, "give a cloud to compare with: either --lidar CLOUD, or --reference-sequence DIR with --camera FILE"};
   }
   if (!arguments.reference.sequence.empty() && arguments.camera_path.empty()) return {ErrorCode::kInvalid, "--reference-sequence needs --camera FILE"};
-  if (!arguments.trajectory_path.empty() && arguments.reference.sequence.empty()) {
-    return {ErrorCode::kInvalid, "--trajectory is compared with the poses of a --reference-sequence, which is missing"};
+  const bool has_reference_poses = !arguments.reference.sequence.empty() || !arguments.reference_trajectory_path.empty();
+  if (!arguments.trajectory_path.empty() && !has_reference_poses) {
+    return {ErrorCode::kInvalid, "--trajectory needs poses to compare it with: --reference-trajectory FILE in the frame of the scan"};
+  }
+  if (!arguments.reference_trajectory_path.empty() && (arguments.trajectory_path.empty() || arguments.lidar_path.empty())) {
+    return {ErrorCode::kInvalid, "--reference-trajectory goes with --lidar and --trajectory"};
   }
   if (!arguments.out_dir.empty() && std::filesystem::exists(arguments.out_dir) && !std::filesystem::is_directory(arguments.out_dir)) {
     return {ErrorCode::kInvalid, "--out-dir " + arguments.out_dir + ": is a file; give a folder"};
@@ -185,11 +210,12 @@ void add_reference_options(CLI::App* command, EvalArguments* arguments) {
   command->add_option("--camera", arguments->camera_path, "Calibration of that recording");
   command->add_option("--poses", arguments->reference.poses, "Its poses: 'embedded' (default) or a trajectory file in TUM format");
   command->add_option("--frame-step", arguments->frame_step, "Every so many of its frames (default 5)")->check(CLI::Range(1, 100000));
-  command->add_option("--trajectory", arguments->trajectory_path, "Trajectory in the map's frame, TUM format, of the same recording: the start of the alignment");
 }
 
 void add_alignment_options(CLI::App* command, EvalArguments* arguments) {
   command->add_option("--points", arguments->points_path, "Control points, a line each: name map_x map_y map_z cloud_x cloud_y cloud_z [sigma]");
+  command->add_option("--trajectory", arguments->trajectory_path, "Trajectory of the map's recording in the map's frame, TUM format: aligned with that of the reference");
+  command->add_option("--reference-trajectory", arguments->reference_trajectory_path, "The same recording in the frame of the scan, TUM format");
   const std::map<std::string, AlignStart> starts{{"auto", AlignStart::kAuto},     {"points", AlignStart::kPoints}, {"trajectory", AlignStart::kTrajectory},
                                                  {"datum", AlignStart::kDatum},   {"none", AlignStart::kNone},     {"search", AlignStart::kSearch}};
   command

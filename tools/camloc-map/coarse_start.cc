@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/geometry/alignment.h"
 #include "tools/camloc-map/cloud_registration.h"
 #include "tools/camloc-map/point_cloud.h"
 
@@ -100,17 +101,16 @@ double match(const std::vector<Eigen::Vector3d>& samples, const CloudIndex& clou
 /// Iterative closest points, point to point: slow at the end, but it comes from far.
 void improve(const std::vector<Eigen::Vector3d>& samples, const CloudIndex& cloud, Candidate* candidate) {
   std::vector<Matched> pairs;
-  std::vector<Eigen::Vector3d> a, b;
+  std::vector<camloc::PointPair> points;
   candidate->score_m = match(samples, cloud, candidate->T_cloud_map, &pairs);
   for (int i = 0; i < kIterations; ++i) {
-    a.clear(), b.clear();
-    for (const Matched& pair : pairs) a.push_back(pair.p_cloud), b.push_back(pair.p_map);
-    const auto aligned = align_pairs(a, b, {}, false);
-    if (!aligned.is_ok()) return;
-    const double score_m = match(samples, cloud, aligned.value().rigid, &pairs);
+    points.clear();
+    for (const Matched& pair : pairs) points.push_back({pair.p_cloud, pair.p_map});
+    const Rigid3 aligned = align_rigid(points).T_a_b;
+    const double score_m = match(samples, cloud, aligned, &pairs);
     if (score_m >= candidate->score_m) return;
     const bool is_still = score_m > 0.999 * candidate->score_m;
-    candidate->T_cloud_map = aligned.value().rigid;
+    candidate->T_cloud_map = aligned;
     candidate->score_m = score_m;
     if (is_still) return;
   }

@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <numeric>
 
+#include "core/geometry/alignment.h"
+
 namespace camloc::map_tool {
 namespace {
 
@@ -63,34 +65,29 @@ Status check_unit(const MapPoints& points, const PointCloud& cloud) {
   return {ErrorCode::kInvalid, text_of("the cloud is %.0f m wide and the map %.1f m: the cloud seems to be in millimetres; say so with --lidar-unit mm", cloud_m, map_m)};
 }
 
-Result<Similarity3> align_points(const std::vector<PointPair>& pairs, const Eigen::Vector3d& origin_m, bool has_scale) {
-  std::vector<Eigen::Vector3d> cloud, map;
-  std::vector<double> weights;
-  for (const PointPair& pair : pairs) {
-    cloud.push_back(pair.p_cloud - origin_m);
-    map.push_back(pair.p_map);
-    weights.push_back(1 / (pair.sigma_m * pair.sigma_m));
-  }
-  const auto aligned = align_pairs(cloud, map, weights, has_scale);
-  if (!aligned.is_ok()) return aligned.status().with_context("control points");
-  return aligned;
+std::vector<PointPair> pairs_of(const std::vector<ControlPair>& controls, const Eigen::Vector3d& origin_m) {
+  std::vector<PointPair> pairs;
+  for (const ControlPair& control : controls) pairs.push_back({control.p_cloud - origin_m, control.p_map, control.sigma_m});
+  return pairs;
 }
 
-/// Positions and, with a lever arm, viewing directions: also a camera that only turned can be aligned.
-Result<Similarity3> align_poses(const std::vector<PosePair>& pairs, const Eigen::Vector3d& origin_m, bool has_scale) {
-  std::vector<Eigen::Vector3d> cloud, map;
-  for (const PosePair& pair : pairs) {
-    cloud.push_back(pair.T_reference_camera.translation - origin_m);
-    map.push_back(pair.T_map_camera.translation);
-    for (int axis = 0; axis < 3 && !has_scale; ++axis) {
+/// Camera positions; `has_axes`: and, with a lever arm, viewing directions, so that a camera that only turned can be aligned, too.
+std::vector<PointPair> pairs_of(const std::vector<PosePair>& poses, const Eigen::Vector3d& origin_m, bool has_axes) {
+  std::vector<PointPair> pairs;
+  for (const PosePair& pose : poses) {
+    pairs.push_back({pose.T_reference_camera.translation - origin_m, pose.T_map_camera.translation});
+    for (int axis = 0; axis < 3 && has_axes; ++axis) {
       const Eigen::Vector3d tip = kPoseLeverM * Eigen::Vector3d::Unit(axis);
-      cloud.push_back(pair.T_reference_camera * tip - origin_m);
-      map.push_back(pair.T_map_camera * tip);
+      pairs.push_back({pose.T_reference_camera * tip - origin_m, pose.T_map_camera * tip});
     }
   }
-  const auto aligned = align_pairs(cloud, map, {}, has_scale);
-  if (!aligned.is_ok()) return aligned.status().with_context("poses");
-  return aligned;
+  return pairs;
+}
+
+Result<Rigid3> align(const std::vector<PointPair>& pairs, const char* what) {
+  const Alignment aligned = align_rigid(pairs);
+  if (aligned.rank == AlignmentRank::kFull) return aligned.T_a_b;
+  return {ErrorCode::kInvalid, std::string(what) + ": all lie on one line, which leaves the rotation about it open; add one aside"};
 }
 
 AlignStart choose_start(const EvaluationInput& input, AlignStart wish) {
@@ -107,13 +104,11 @@ Result<Rigid3> find_start(const EvaluationInput& input, const MapPoints& points,
   switch (result->start) {
     case AlignStart::kPoints: {
       if (input.points.empty()) return {ErrorCode::kInvalid, "--align points needs control points: --points FILE"};
-      const auto aligned = align_points(input.points, origin_m, false);
-      return aligned.is_ok() ? Result<Rigid3>(aligned.value().rigid) : Result<Rigid3>(aligned.status());
+      return align(pairs_of(input.points, origin_m), "control points");
     }
     case AlignStart::kTrajectory: {
-      if (input.poses.empty()) return {ErrorCode::kInvalid, "--align trajectory needs --reference-sequence and --trajectory FILE"};
-      const auto aligned = align_poses(input.poses, origin_m, false);
-      return aligned.is_ok() ? Result<Rigid3>(aligned.value().rigid) : Result<Rigid3>(aligned.status());
+      if (input.poses.empty()) return {ErrorCode::kInvalid, "--align trajectory needs --trajectory FILE, and poses to compare it with: --reference-trajectory FILE or --reference-sequence DIR"};
+      return align(pairs_of(input.poses, origin_m, true), "trajectory");
     }
     case AlignStart::kDatum:
       if (!input.map->info().wcs) return {ErrorCode::kInvalid, "--align datum: " + input.map->info().path + " has no datum; camloc map georef gives it one"};
@@ -159,21 +154,21 @@ void check_scale(const EvaluationInput& input, const MapPoints& points, const Ri
     result->scale = similar.value().T_cloud_map.scale;
     result->sigma_scale = similar.value().sigma_scale;
   }
-  if (input.points.size() >= 3) {
-    if (const auto similar = align_points(input.points, input.cloud->origin_m, true); similar.is_ok()) result->points_scale = similar.value().scale;
-  }
-  if (input.poses.size() >= 3) {
-    if (const auto similar = align_poses(input.poses, input.cloud->origin_m, true); similar.is_ok()) result->poses_scale = similar.value().scale;
-  }
+  const auto scale_of = [](const std::vector<PointPair>& pairs) -> std::optional<double> {
+    const Alignment aligned = align_similarity(pairs);
+    return aligned.rank == AlignmentRank::kNothing || aligned.rank == AlignmentRank::kPosition ? std::nullopt : std::optional(aligned.scale);
+  };
+  result->points_scale = scale_of(pairs_of(input.points, input.cloud->origin_m));
+  result->poses_scale = scale_of(pairs_of(input.poses, input.cloud->origin_m, false));
 }
 
 void measure_residuals(const EvaluationInput& input, const Rigid3& T_cloud_map, Evaluation* result) {
   if (input.points.empty()) return;
-  const auto aligned = align_points(input.points, input.cloud->origin_m, false);
-  for (const PointPair& pair : input.points) {
+  const Rigid3 aligned = align_rigid(pairs_of(input.points, input.cloud->origin_m)).T_a_b;
+  for (const ControlPair& pair : input.points) {
     const Eigen::Vector3d p_cloud = pair.p_cloud - input.cloud->origin_m;
     const Eigen::Vector3d final_m = T_cloud_map * pair.p_map - p_cloud;
-    result->residuals.push_back({pair.name, pair.sigma_m, aligned.is_ok() ? Eigen::Vector3d(aligned.value() * pair.p_map - p_cloud) : final_m, final_m});
+    result->residuals.push_back({pair.name, pair.sigma_m, aligned * pair.p_map - p_cloud, final_m});
   }
 }
 

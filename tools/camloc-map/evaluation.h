@@ -40,7 +40,7 @@ struct PosePair {
 struct EvaluationInput {
   const MapView* map = nullptr;
   const PointCloud* cloud = nullptr;
-  std::vector<PointPair> points;   ///< may be empty
+  std::vector<ControlPair> points;   ///< may be empty
   std::vector<PosePair> poses;     ///< may be empty
 };
 

@@ -15,14 +15,14 @@ constexpr std::size_t kMaxFileBytes = std::size_t{16} << 20;
 
 }  // namespace
 
-Result<std::vector<PointPair>> parse_point_pairs(std::string_view text, const std::string& path) {
-  std::vector<PointPair> pairs;
+Result<std::vector<ControlPair>> parse_point_pairs(std::string_view text, const std::string& path) {
+  std::vector<ControlPair> pairs;
   for (const TextLine& line : content_lines(text)) {
     const auto fields = split_fields(line.text);
     if (fields.size() != 7 && fields.size() != 8) {
       return line_error(path, line.number, "has " + std::to_string(fields.size()) + " fields; 'name map_x map_y map_z cloud_x cloud_y cloud_z [sigma]' has 7 or 8");
     }
-    PointPair pair;
+    ControlPair pair;
     pair.name = std::string(fields[0]);
     double numbers[7] = {0, 0, 0, 0, 0, 0, pair.sigma_m};
     for (std::size_t i = 1; i < fields.size(); ++i) {
@@ -34,7 +34,7 @@ Result<std::vector<PointPair>> parse_point_pairs(std::string_view text, const st
     pair.p_cloud = {numbers[3], numbers[4], numbers[5]};
     pair.sigma_m = numbers[6];
     if (!(pair.sigma_m > 0)) return line_error(path, line.number, "sigma must be positive, in metres");
-    const auto same = [&](const PointPair& other) { return other.name == pair.name; };
+    const auto same = [&](const ControlPair& other) { return other.name == pair.name; };
     if (std::any_of(pairs.begin(), pairs.end(), same)) return line_error(path, line.number, "point " + in_quotes(pair.name) + " was given before");
     pairs.push_back(std::move(pair));
   }
@@ -42,7 +42,7 @@ Result<std::vector<PointPair>> parse_point_pairs(std::string_view text, const st
   return pairs;
 }
 
-Result<std::vector<PointPair>> read_point_pairs(const std::string& path) {
+Result<std::vector<ControlPair>> read_point_pairs(const std::string& path) {
   const auto text = read_file_text(path, kMaxFileBytes);
   if (!text.is_ok()) return text.status();
   return parse_point_pairs(text.value(), path);

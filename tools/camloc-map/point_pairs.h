@@ -14,7 +14,7 @@
 
 namespace camloc::map_tool {
 
-struct PointPair {
+struct ControlPair {
   std::string name;
   Eigen::Vector3d p_map, p_cloud;
   double sigma_m = 0.01;
@@ -22,7 +22,7 @@ struct PointPair {
 
 /// Errors name file and line: a wrong number of fields, what is no finite number, a sigma that is not positive, a name used
 /// twice, fewer than three pairs.
-[[nodiscard]] Result<std::vector<PointPair>> parse_point_pairs(std::string_view text, const std::string& path);
-[[nodiscard]] Result<std::vector<PointPair>> read_point_pairs(const std::string& path);
+[[nodiscard]] Result<std::vector<ControlPair>> parse_point_pairs(std::string_view text, const std::string& path);
+[[nodiscard]] Result<std::vector<ControlPair>> read_point_pairs(const std::string& path);
 
 }  // namespace camloc::map_tool
