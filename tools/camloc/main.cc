@@ -31,13 +31,21 @@ constexpr std::array kCommands{
     Command{"doctor", camloc::tools::add_doctor_command},
     Command{"frames", camloc::tools::add_frames_command},
 };
-/// Sub-commands of `camloc map` that are built in; the others belong to the program camloc-map.
+/// Sub-commands of `camloc map` that are built in, and those of the program camloc-map.
 const std::vector<std::string> kMapCommands{"info", "verify"};
+const std::vector<std::string> kMapProgramCommands{"build", "eval", "export", "georef", "merge", "view"};
 const char* const kProgramsHelp =
     "Programs of the package camloc-tools, run as `camloc NAME`:\n"
     "  map build                   Build a map from a recorded walk\n"
+    "  map view, map export        See a map; write it for other viewers\n"
+    "  map georef, map merge       Put a map into site coordinates; join walks\n"
+    "  map eval                    Compare a map with a laser scan\n"
     "  bench                       Time and accuracy, beside plain OpenCV calls\n"
     "  sim                         Write a synthetic building with its walks";
+
+bool is_one_of(const std::string& word, const std::vector<std::string>& words) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
 
 bool is_built_in(const CLI::App& app, const std::string& name) {
   for (const CLI::App* command : app.get_subcommands({})) {
@@ -51,15 +59,16 @@ bool is_external(const CLI::App& app, const std::vector<std::string>& arguments)
   if (arguments.empty() || arguments[0].empty() || arguments[0][0] == '-') return false;
   if (arguments[0] != "map") return !is_built_in(app, arguments[0]);
   if (!is_built_in(app, "map")) return true;
-  return arguments.size() > 1 && arguments[1][0] != '-' &&
-         std::find(kMapCommands.begin(), kMapCommands.end(), arguments[1]) == kMapCommands.end();
+  return arguments.size() > 1 && arguments[1][0] != '-' && !is_one_of(arguments[1], kMapCommands);
 }
 
 /// Becomes camloc-X; returns 2 where there is none.
 int run_external(const CLI::App& app, const std::vector<std::string>& arguments) {
   const auto program = find_program("camloc-" + arguments[0]);
-  if (arguments[0] == "map" && arguments.size() > 1 && arguments[1] != "build") {
-    const std::string closest = camloc::tools::closest_word(arguments[1], {"build", "info", "verify"});
+  if (arguments[0] == "map" && arguments.size() > 1 && !is_one_of(arguments[1], kMapProgramCommands)) {
+    std::vector<std::string> known = kMapCommands;
+    known.insert(known.end(), kMapProgramCommands.begin(), kMapProgramCommands.end());
+    const std::string closest = camloc::tools::closest_word(arguments[1], known);
     camloc::tools::print_error("camloc", "no command 'map " + arguments[1] + "'; " +
                                              (closest.empty() ? "see 'camloc map --help'" : "did you mean 'map " + closest + "'?"));
     return 2;
