@@ -60,11 +60,11 @@ inline std::vector<Rigid3> make_cameras(std::mt19937& rng, const BundleWorldOpti
 }
 
 /// On the walls of a room of 6 x 6 x 3 m, or of a corridor 2 m wide.
-inline Eigen::Vector3d make_landmark(std::mt19937& rng, const BundleWorldOptions& o) {
+inline Eigen::Vector3d make_landmark(std::mt19937& rng, const BundleWorldOptions& o, std::uint32_t index) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   const double side = uniform(rng) < 0.5 ? -1 : 1, along = uniform(rng), height = 3 * uniform(rng), relief = uniform(rng);
-  if (o.corridor_m > 0) {
-    return pose_on_loop(along * o.corridor_m, o.corridor_m) * Eigen::Vector3d(side * (0.9 + 0.2 * relief), 1.5 - height, 0);
+  if (o.corridor_m > 0) {  // numbered along the way, as they are created
+    return pose_on_loop((index + along) / o.num_landmarks * o.corridor_m, o.corridor_m) * Eigen::Vector3d(side * (0.9 + 0.2 * relief), 1.5 - height, 0);
   }
   const double across = 6 * along - 3, depth = side * (3 - 0.5 * relief);
   return uniform(rng) < 0.5 ? Eigen::Vector3d(across, depth, height) : Eigen::Vector3d(depth, across, height);
@@ -85,7 +85,7 @@ inline BundleWorld make_bundle_world(std::mt19937& rng, const BundleWorldOptions
   std::normal_distribution<double> normal;
   const double focal_px = world.options.focal_px;
   for (std::uint32_t l = 0; l < o.num_landmarks; ++l) {
-    const Eigen::Vector3d X = make_landmark(rng, o);
+    const Eigen::Vector3d X = make_landmark(rng, o, l);
     truth.landmarks_m.push_back(X);
     for (std::uint32_t c = 0; c < o.num_cameras; ++c) {
       const Rigid3& T_map_camera = truth.T_map_camera[c];
