@@ -40,6 +40,11 @@ TEST(ModelScaleTest, FindsTheScale) {
   }
 }
 
+TEST(ModelScaleTest, IsDescribedInOneLine) {
+  const ModelScale scale{0.27101, 0.0123, 0.004, 801, 60};
+  EXPECT_EQ(describe_scale(scale), "0.271 m a unit, from 801 points in 60 images; scatter 1.2 %, drift between images 0.4 %");
+}
+
 TEST(ModelScaleTest, AFifthOfTheDepthsMayBeWrong) {
   const auto scale = estimate_model_scale(make_pairs(0.5, 0.03, 5));
   ASSERT_TRUE(scale.is_ok()) << scale.status().message();

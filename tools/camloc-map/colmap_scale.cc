@@ -33,6 +33,13 @@ std::string percent(double fraction) {
 
 }  // namespace
 
+std::string describe_scale(const ModelScale& scale) {
+  char metres[32];
+  std::snprintf(metres, sizeof metres, "%.4g", scale.metres_per_unit);
+  return std::string(metres) + " m a unit, from " + std::to_string(scale.num_pairs) + " points in " + std::to_string(scale.num_images) +
+         " images; scatter " + percent(scale.spread) + ", drift between images " + percent(scale.image_spread);
+}
+
 Result<ModelScale> estimate_model_scale(std::span<const DepthPair> pairs, const ModelScaleOptions& options) {
   std::vector<double> logs;
   std::map<std::uint32_t, std::vector<double>> logs_of_image;

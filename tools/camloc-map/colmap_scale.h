@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/base/result.h"
@@ -34,6 +35,9 @@ struct ModelScaleOptions {
   double max_spread = 0.15;     ///< points of a structure-from-motion model scatter 1-5 % at room distances
   double max_image_spread = 0.05;
 };
+
+/// "0.271 m a unit, from 80170 points in 60 images; scatter 1.2 %, drift between images 0.4 %": for a summary.
+[[nodiscard]] std::string describe_scale(const ModelScale& scale);
 
 /// Median of measured / model depth. The spreads are 1.4826 times the median absolute deviation of the logarithm of the ratio.
 /// kInvalid, naming the numbers: too few pairs, or spreads above the limits, as with poses, images or a depth that do not
