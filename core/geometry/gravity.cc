@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Up from an accelerometer. The floor is in floor_plane.cc.
+#include "core/geometry/gravity.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+namespace camloc {
+namespace {
+
+constexpr int kMaxMedianSteps = 100;
+/// Readings follow each other: this many of them say as much as one that is independent.
+constexpr double kReadingsPerIndependent = 10;
+constexpr double kMinRoughLength = 0.3;
+constexpr double kMaxRoughAngleCosine = 0.5;  ///< 60 degrees
+/// The second best mapping must scatter this much more.
+constexpr double kMinScatterRatio = 1.3;
+
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Unit vectors up, one per reading that is no push.
+std::vector<Eigen::Vector3d> directions_up(std::span<const OrientedReading> readings, const AccelerometerOptions& options) {
+  std::vector<Eigen::Vector3d> directions;
+  for (const OrientedReading& reading : readings) {
+    const double norm = reading.acceleration.norm();
+    if (!(std::abs(norm - kStandardGravity) <= options.max_norm_error)) continue;
+    directions.push_back(reading.R_map_camera * (options.R_camera_accelerometer * (reading.acceleration / norm)));
+  }
+  return directions;
+}
+
+/// The point with the least sum of distances (Weiszfeld, 1937), as a direction.
+Eigen::Vector3d median_direction(const std::vector<Eigen::Vector3d>& directions) {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& direction : directions) center += direction;
+  center /= static_cast<double>(directions.size());
+  for (int step = 0; step < kMaxMedianSteps; ++step) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double weight = 0;
+    for (const Eigen::Vector3d& direction : directions) {
+      const double w = 1 / std::max(1e-6, (direction - center).norm());
+      weight += w;
+      sum += w * direction;
+    }
+    const Eigen::Vector3d next = sum / weight;
+    const double change = (next - center).norm();
+    center = next;
+    if (change < 1e-9) break;
+  }
+  return center.norm() > 1e-9 ? Eigen::Vector3d(center.normalized()) : directions.front();
+}
+
+struct RobustMean {
+  Eigen::Vector3d direction;
+  double median_angle_rad = 0;  ///< to the median direction
+  double rms_rad = 0;           ///< of the inliers
+  std::size_t num_inliers = 0;
+};
+
+RobustMean robust_mean(const std::vector<Eigen::Vector3d>& directions) {
+  RobustMean result;
+  const Eigen::Vector3d center = median_direction(directions);
+  std::vector<double> angles;
+  for (const Eigen::Vector3d& direction : directions) angles.push_back(angle_between(direction, center));
+  result.median_angle_rad = median(angles);
+  // The angle of a two-dimensional normal error has its median at 1.18 sigma; three sigma hold 99 % of them.
+  const double limit = std::max(1e-6, 3 * result.median_angle_rad / 1.18);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double sum_squared = 0;
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    if (angles[i] > limit) continue;
+    sum += directions[i];
+    sum_squared += angles[i] * angles[i];
+    ++result.num_inliers;
+  }
+  result.direction = sum.normalized();
+  result.rms_rad = std::sqrt(sum_squared / static_cast<double>(result.num_inliers));
+  return result;
+}
+
+std::string in_degrees(double angle_rad) { return std::to_string(std::lround(angle_rad * 57.29577951308232)) + " degrees"; }
+
+Status check_count(std::size_t num_used, std::size_t num_readings, const AccelerometerOptions& options) {
+  if (num_used >= options.min_readings) return Status::ok();
+  return {ErrorCode::kInvalid, "only " + std::to_string(num_used) + " of " + std::to_string(num_readings) +
+                                   " accelerometer readings are of a camera with a pose that is not being pushed; " +
+                                   std::to_string(options.min_readings) + " are needed"};
+}
+
+}  // namespace
+
+std::optional<Eigen::Vector3d> rough_up(std::span<const Rigid3> T_map_camera) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Rigid3& T : T_map_camera) sum -= T.rotation * Eigen::Vector3d::UnitY();
+  if (T_map_camera.empty() || sum.norm() < kMinRoughLength * static_cast<double>(T_map_camera.size())) return std::nullopt;
+  return sum.normalized();
+}
+
+Eigen::Matrix3d kinect_R_camera_accelerometer() { return Eigen::Vector3d(-1, -1, 1).asDiagonal(); }
+
+Result<GravityEstimate> gravity_from_accelerometer(std::span<const OrientedReading> readings, const AccelerometerOptions& options) {
+  const std::vector<Eigen::Vector3d> directions = directions_up(readings, options);
+  if (const Status status = check_count(directions.size(), readings.size(), options); !status) return status;
+  const RobustMean mean = robust_mean(directions);
+  if (mean.median_angle_rad > options.max_scatter_rad) {
+    return {ErrorCode::kInvalid, "accelerometer readings point up to different sides, " + in_degrees(mean.median_angle_rad) +
+                                     " from each other's mean; check the order and signs of its axes, its clock, and that it belongs to "
+                                     "these poses"};
+  }
+  GravityEstimate estimate;
+  estimate.source = GravitySource::kAccelerometer;
+  estimate.up_map = mean.direction;
+  estimate.num_samples = directions.size();
+  estimate.inlier_share = static_cast<double>(mean.num_inliers) / static_cast<double>(directions.size());
+  estimate.scatter = mean.rms_rad;
+  const double num_independent = std::max(1.0, static_cast<double>(mean.num_inliers) / kReadingsPerIndependent);
+  estimate.sigma_rad = std::hypot(mean.rms_rad / std::sqrt(num_independent), options.bias_sigma_rad);
+  return estimate;
+}
+
+Result<Eigen::Matrix3d> find_accelerometer_axes(std::span<const OrientedReading> readings, const Eigen::Vector3d& rough_up_map,
+                                                const AccelerometerOptions& options) {
+  std::optional<Eigen::Matrix3d> best;
+  double least = 0, second = 0;
+  for (int signs = 0; signs < 8; ++signs) {
+    AccelerometerOptions turned = options;
+    const Eigen::Vector3d diagonal((signs & 1) != 0 ? -1 : 1, (signs & 2) != 0 ? -1 : 1, (signs & 4) != 0 ? -1 : 1);
+    turned.R_camera_accelerometer = diagonal.asDiagonal();
+    const std::vector<Eigen::Vector3d> directions = directions_up(readings, turned);
+    if (const Status status = check_count(directions.size(), readings.size(), options); !status) return status;
+    const RobustMean mean = robust_mean(directions);
+    if (mean.direction.dot(rough_up_map.normalized()) < kMaxRoughAngleCosine) continue;
+    const double scatter = mean.median_angle_rad;
+    if (!best || scatter < least) {
+      second = best ? least : 1e9;
+      least = scatter;
+      best = turned.R_camera_accelerometer;
+    } else {
+      second = std::min(second, scatter);
+    }
+  }
+  if (!best || least > options.max_scatter_rad) {
+    return {ErrorCode::kInvalid, "under no signs of its axes do the accelerometer's readings agree with the poses; is it of this recording?"};
+  }
+  if (second < kMinScatterRatio * least + 0.01) {
+    return {ErrorCode::kInvalid, "the signs of the accelerometer's axes cannot be told: the camera was not tilted enough; name them"};
+  }
+  return *best;
+}
+
+}  // namespace camloc
