@@ -7,6 +7,7 @@
 #include <memory>
 #include <set>
 
+#include "core/geometry/gravity.h"
 #include "core/map/map_unpack.h"
 #include "core/map/map_view.h"
 #include "core/map/map_writer.h"
@@ -45,13 +46,11 @@ struct GeorefArguments {
   bool is_dry_run = false, is_json = false;
 };
 
-/// Mean of -y of the keyframes: people hold cameras upright, more or less.
-std::optional<Eigen::Vector3d> rough_up(const MapView& map) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::uint32_t k = 0; k < map.info().num_keyframes; ++k) sum -= map.keyframe_pose(k).rotation * Eigen::Vector3d::UnitY();
-  // Cameras in all orientations say nothing.
-  if (sum.norm() < 0.5 * map.info().num_keyframes || map.info().num_keyframes == 0) return std::nullopt;
-  return sum.normalized();
+/// From the keyframes alone: a datum that is already there may be the wrong one.
+std::optional<Eigen::Vector3d> rough_up_of(const MapView& map) {
+  std::vector<Rigid3> poses;
+  for (std::uint32_t k = 0; k < map.info().num_keyframes; ++k) poses.push_back(map.keyframe_pose(k));
+  return rough_up(poses);
 }
 
 Result<PointSighting> landmark_sighting(const MapView& map, std::uint32_t landmark) {
@@ -130,7 +129,7 @@ Status georef(const GeorefArguments& arguments, GeorefSummary* summary) {
   name_partnerless(*points, *observations, summary);
   const std::vector<ObservedPoint> observed = average_sightings(resolved->sightings);
   GeorefOptions options = arguments.fit;
-  options.up_map = rough_up(*map);
+  options.up_map = rough_up_of(*map);
   summary->fit = fit_georef(match_points(*points, observed), options);
   for (const ObservedPoint& point : observed) {
     if (point.farthest.empty()) continue;
