@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // `camloc map info` and `camloc map verify`: what is in a map file, and whether it is whole.
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "core/geometry/wcs.h"
 #include "core/map/map_view.h"
 #include "tools/camloc/commands.h"
 #include "tools/camloc/sequence_run.h"
@@ -23,7 +26,42 @@ struct MapArguments {
 
 double bytes_per_landmark(const MapInfo& info) { return info.num_landmarks == 0 ? 0.0 : static_cast<double>(info.file_bytes) / info.num_landmarks; }
 
-void print_json(const MapInfo& info, double open_ms) {
+/// The middle of the keyframes: at the origin of `map`, which may be far from the building, a turn of the datum weighs more.
+PoseWithCovariance middle_in_wcs(const MapView& map) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::uint32_t k = 0; k < map.info().num_keyframes; ++k) sum += map.keyframe_pose(k).translation;
+  PoseWithCovariance middle;
+  middle.pose.translation = sum / std::max<double>(1.0, map.info().num_keyframes);
+  return to_wcs(*map.info().wcs, middle);
+}
+
+double position_sigma_m(const Matrix6d& covariance) { return std::sqrt(covariance.topLeftCorner<3, 3>().trace() / 3); }
+double turn_sigma_deg(const Matrix6d& covariance) { return std::sqrt(covariance.bottomRightCorner<3, 3>().trace() / 3) * 180.0 / std::numbers::pi; }
+
+Json datum_json(const MapView& map) {
+  if (!map.info().wcs) return nullptr;
+  const Rigid3& T = map.info().wcs->T_wcs_map;
+  const PoseWithCovariance middle = middle_in_wcs(map);
+  return {{"position_m", {T.translation.x(), T.translation.y(), T.translation.z()}},
+          {"orientation_wxyz", {T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()}},
+          {"middle_m", {middle.pose.translation.x(), middle.pose.translation.y(), middle.pose.translation.z()}},
+          {"sigma_m", position_sigma_m(middle.covariance)},
+          {"sigma_deg", turn_sigma_deg(middle.covariance)}};
+}
+
+void print_datum(const MapView& map) {
+  if (!map.info().wcs) {
+    std::printf("world frame  not set: poses are in the map's own frame; set it with 'camloc map georef'\n");
+    return;
+  }
+  const PoseWithCovariance middle = middle_in_wcs(map);
+  const Eigen::Vector3d& p = middle.pose.translation;
+  std::printf("world frame  set: the middle of the map is at %.3f %.3f %.3f in the site, +- %.3f m and %.3f deg per axis\n", p.x(), p.y(), p.z(),
+              position_sigma_m(middle.covariance), turn_sigma_deg(middle.covariance));
+}
+
+void print_json(const MapView& map, double open_ms) {
+  const MapInfo& info = map.info();
   char id[20];
   std::snprintf(id, sizeof id, "%016llx", static_cast<unsigned long long>(info.map_id));
   const Json json{{"path", info.path},
@@ -41,11 +79,13 @@ void print_json(const MapInfo& info, double open_ms) {
                   {"pose_sigma_deg", info.pose_sigma_rad * 180.0 / std::numbers::pi},
                   {"camera", info.camera.name},
                   {"georeferenced", info.wcs.has_value()},
+                  {"T_wcs_map", datum_json(map)},
                   {"open_ms", open_ms}};
   std::printf("%s\n", json.dump(1).c_str());
 }
 
-void print_table(const MapInfo& info, double open_ms) {
+void print_table(const MapView& map, double open_ms) {
+  const MapInfo& info = map.info();
   std::printf("map          %s%s%s\n", info.path.c_str(), info.name.empty() ? "" : ", ", info.name.c_str());
   std::printf("id           %016llx, format version %u\n", static_cast<unsigned long long>(info.map_id), info.version);
   std::printf("size         %.3f MB, %.1f bytes a landmark, opened in %.2f ms\n", 1e-6 * static_cast<double>(info.file_bytes), bytes_per_landmark(info), open_ms);
@@ -53,7 +93,7 @@ void print_table(const MapInfo& info, double open_ms) {
   std::printf("keyframes    %u (the minimum set that covers all landmarks), %u words\n", info.num_keyframes, info.num_words);
   std::printf("mapping      recorded poses agree to %.1f cm and %.2f deg per axis\n", 100.0 * info.pose_sigma_m, info.pose_sigma_rad * 180.0 / std::numbers::pi);
   std::printf("camera       %s\n", info.camera.name.c_str());
-  std::printf("world frame  %s\n", info.wcs ? "set: poses can be given in the site's coordinates" : "not set: poses are in the map's own frame");
+  print_datum(map);
 }
 
 Status show_info(const MapArguments& arguments) {
@@ -61,8 +101,8 @@ Status show_info(const MapArguments& arguments) {
   auto map = MapView::open(arguments.path);
   if (!map) return map.status();
   const double open_ms = 1e-6 * static_cast<double>(monotonic_ns() - started_ns);
-  if (arguments.is_json) print_json(map->info(), open_ms);
-  else print_table(map->info(), open_ms);
+  if (arguments.is_json) print_json(*map, open_ms);
+  else print_table(*map, open_ms);
   return Status::ok();
 }
 
