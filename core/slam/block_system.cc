@@ -79,39 +79,22 @@ bool BlockSystem::solve_dense(Eigen::VectorXd* x) {
   return true;
 }
 
-void BlockSystem::lay_out_scalars() {
-  const auto size = static_cast<Eigen::Index>(num_blocks_) * kSize;
-  sparse_.resize(size, size);
-  sparse_.resizeNonZeros(static_cast<Eigen::Index>(blocks_.size()));
-  Eigen::Index count = 0;
-  for (std::uint32_t column = 0; column < num_blocks_; ++column) {
-    for (int k = 0; k < kSize; ++k) {
-      sparse_.outerIndexPtr()[kSize * column + static_cast<std::uint32_t>(k)] = static_cast<int>(count);
-      for (std::uint32_t row = 0; row <= column; ++row) {
-        if ((words_[column * words_per_column_ + row / 64] >> (row % 64) & 1U) == 0) continue;
-        for (int r = 0; r < kSize; ++r) sparse_.innerIndexPtr()[count++] = static_cast<int>(row) * kSize + r;
-      }
+std::vector<std::pair<std::uint32_t, std::uint32_t>> BlockSystem::block_positions() const {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> positions;
+  for (std::size_t i = 0; i < words_.size(); ++i) {
+    const auto column = static_cast<std::uint32_t>(i / words_per_column_);
+    for (std::uint64_t bits = words_[i]; bits != 0; bits &= bits - 1) {
+      const auto row = 64 * (i % words_per_column_) + static_cast<std::size_t>(std::countr_zero(bits));
+      positions.emplace_back(static_cast<std::uint32_t>(row), column);
     }
   }
-  sparse_.outerIndexPtr()[size] = static_cast<int>(count);
-  sparse_factor_.analyzePattern(sparse_);
+  return positions;
 }
 
 bool BlockSystem::solve_sparse(Eigen::VectorXd* x) {
-  if (sparse_.rows() == 0) lay_out_scalars();
-  const double* block = blocks_.data();
-  for (std::uint32_t column = 0; column < num_blocks_; ++column) {
-    const int* const begin = sparse_.outerIndexPtr() + kSize * column;
-    const int height = begin[1] - begin[0];
-    double* const values = sparse_.valuePtr() + begin[0];
-    for (int row = 0; row < height; row += kSize, block += kBlockDoubles) {
-      for (int k = 0; k < kSize; ++k) std::copy_n(block + kSize * k, kSize, values + k * height + row);
-    }
-  }
-  sparse_factor_.factorize(sparse_);
-  // A product of L, D and L' exists for indefinite matrices, too.
-  if (sparse_factor_.info() != Eigen::Success || !(sparse_factor_.vectorD().minCoeff() > 0)) return false;
-  *x = sparse_factor_.solve(*x).eval();
+  if (!cholesky_) cholesky_.emplace(num_blocks_, block_positions());
+  if (!cholesky_->factorize(blocks_.data())) return false;
+  cholesky_->solve(x);
   return true;
 }
 

@@ -6,11 +6,12 @@
 // sparse; where the blocks are is decided once.
 #pragma once
 
-#include <Eigen/SparseCholesky>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/geometry/rigid3.h"
+#include "core/slam/block_cholesky.h"
 
 namespace camloc {
 
@@ -60,7 +61,7 @@ class BlockSystem {
   [[nodiscard]] std::size_t index_of(std::uint32_t row, std::uint32_t column) const;
   bool solve_dense(Eigen::VectorXd* x);
   bool solve_sparse(Eigen::VectorXd* x);
-  void lay_out_scalars();
+  [[nodiscard]] std::vector<std::pair<std::uint32_t, std::uint32_t>> block_positions() const;
 
   std::uint32_t num_blocks_;
   bool is_sparse_;
@@ -72,8 +73,7 @@ class BlockSystem {
   std::vector<std::uint32_t> blocks_before_word_;
 
   Eigen::MatrixXd dense_;
-  Eigen::SparseMatrix<double> sparse_;  ///< upper triangle, with whole diagonal blocks
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Upper> sparse_factor_;
+  std::optional<BlockCholesky> cholesky_;
 };
 
 }  // namespace camloc
