@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "tests/map_tool/scanned_flat.h"
+#include "tools/camloc-map/cell_correlation.h"
+#include "tools/camloc-map/wall_directions.h"
 
 namespace camloc::map_tool {
 namespace {
@@ -107,30 +109,64 @@ TEST_P(Search, FindsAMapInAnyFrame) {
   const ScannedFlat flat(7);
   Random random(static_cast<std::uint32_t>(GetParam()));
   const Rigid3 truth{random.rotation(), 30 * random.direction()};
-  const auto landmarks = in_map(flat.landmarks_m, truth);
-  const auto start = find_coarse_start(landmarks, flat.cloud_m, Eigen::Vector3d::Zero());
-  ASSERT_TRUE(start.is_ok());
-  EXPECT_FALSE(start.value().is_identity);
-  EXPECT_GT(start.value().rival_score_m, start.value().score_m);
+  auto landmarks = in_map(flat.landmarks_m, truth);
+  // Odd ones hold only a part of the flat: one room and what is behind its door.
+  if (GetParam() % 2 == 1) std::erase_if(landmarks, [&](const Eigen::Vector3d& p) { return (truth * p).x() > 5; });
+  const auto starts = find_coarse_starts(landmarks, flat.cloud_m, Eigen::Vector3d::Zero());
+  ASSERT_TRUE(starts.is_ok());
+  ASSERT_GE(starts.value().size(), 2U);
+  EXPECT_FALSE(starts.value()[0].is_identity);
   CloudIndex cloud(flat.cloud_m);
   RegistrationOptions options;
   options.start_distance_m = 1.5;
-  const auto result = register_points(landmarks, &cloud, {1, start.value().T_cloud_map}, options);
-  ASSERT_TRUE(result.is_ok());
-  expect_near(result.value().T_cloud_map.rigid * truth.inverse(), Rigid3{}, 0.01, 0.1);
+  options.max_points = 3000;
+  Rigid3 best;
+  double best_score = 1e9;
+  for (const CoarseStart& start : starts.value()) {
+    const auto result = register_points(landmarks, &cloud, {1, start.T_cloud_map}, options);
+    if (!result.is_ok()) continue;
+    const double score = capped_mean_distance(landmarks, cloud, result.value().T_cloud_map.rigid, 0.5);
+    if (score < best_score) best_score = score, best = result.value().T_cloud_map.rigid;
+  }
+  expect_near(best * truth.inverse(), Rigid3{}, 0.01, 0.1);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, Search, ::testing::Range(1, 9));
+INSTANTIATE_TEST_SUITE_P(Seeds, Search, ::testing::Range(1, 7));
 
-TEST(CoarseStartTest, PrefersTheMapsOwnFrameWhereItFits) {
+TEST(CoarseStarts, KeepTheMapsOwnFrameWhereItFits) {
   const ScannedFlat flat(7);
   std::vector<Eigen::Vector3d> landmarks;
   const Eigen::Vector3d origin(500000, 5400000, 100);  // the cloud is relative to it, the map is not
   for (const auto& p : flat.landmarks_m) landmarks.push_back(p + origin);
-  const auto start = find_coarse_start(landmarks, flat.cloud_m, origin);
-  ASSERT_TRUE(start.is_ok());
-  EXPECT_TRUE(start.value().is_identity);
-  expect_near(start.value().T_cloud_map * Rigid3{Eigen::Quaterniond::Identity(), origin}, Rigid3{}, 1e-6, 1e-6);
+  const auto starts = find_coarse_starts(landmarks, flat.cloud_m, origin);
+  ASSERT_TRUE(starts.is_ok());
+  EXPECT_TRUE(starts.value()[0].is_identity);
+  expect_near(starts.value()[0].T_cloud_map * Rigid3{Eigen::Quaterniond::Identity(), origin}, Rigid3{}, 1e-6, 1e-6);
+  EXPECT_FALSE(find_coarse_starts(std::vector<Eigen::Vector3d>(100, Eigen::Vector3d(1, 2, 3)), flat.cloud_m, origin).is_ok());
+}
+
+TEST(WallDirections, AreThoseOfTheRoom) {
+  const ScannedFlat flat(2);
+  const Rigid3 turn = motion({20, 30, 40}, {0, 0, 0});
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 0; i < flat.cloud_m.size(); i += 7) points.push_back(turn * flat.cloud_m[i].cast<double>());
+  const Eigen::Matrix3d axes = turn.rotation.toRotationMatrix().transpose() * wall_directions(points);
+  EXPECT_NEAR(axes.determinant(), 1, 1e-9);
+  for (int i = 0; i < 3; ++i) EXPECT_GT(axes.col(i).cwiseAbs().maxCoeff(), 0.9998) << axes;
+}
+
+TEST(CellGridTest, FindsWhereAPieceBelongs) {
+  Random random(1);
+  std::vector<Eigen::Vector3d> points, piece;
+  for (int i = 0; i < 400; ++i) points.emplace_back(random.uniform(-10, 10), random.uniform(-8, 8), random.uniform(0, 3));
+  for (const auto& p : points) if (p.x() > 2) piece.push_back(p - Eigen::Vector3d(7, -20, 100));
+  const CellGrid grid(points, 0.25, 1000000);
+  const auto places = grid.best_places(piece, 4);
+  ASSERT_EQ(places.size(), 4U);
+  EXPECT_LT((places[0].translation_m - Eigen::Vector3d(7, -20, 100)).cwiseAbs().maxCoeff(), 0.26);
+  EXPECT_GT(places[0].share, 2 * places[1].share);
+  EXPECT_EQ(CellGrid(points, 0.25, 1000).cell_m() > 0.5, true);
+  EXPECT_TRUE(grid.best_places({}, 3).empty());
 }
 
 }  // namespace

@@ -158,4 +158,13 @@ Result<Registration> register_points(std::span<const Eigen::Vector3d> points_map
   return result;
 }
 
+double capped_mean_distance(std::span<const Eigen::Vector3d> points_map, const CloudIndex& cloud, const Rigid3& T_cloud_map, double max_distance_m) {
+  double sum = 0;
+  for (const Eigen::Vector3d& p : points_map) {
+    const auto neighbor = cloud.nearest(T_cloud_map * p, max_distance_m);
+    sum += neighbor ? neighbor->distance_m : max_distance_m;
+  }
+  return points_map.empty() ? 0 : sum / static_cast<double>(points_map.size());
+}
+
 }  // namespace camloc::map_tool

@@ -52,15 +52,20 @@ struct Registration {
 [[nodiscard]] Result<Registration> register_points(std::span<const Eigen::Vector3d> points_map, CloudIndex* cloud, const Similarity3& start,
                                                    const RegistrationOptions& options);
 
-/// A start without any hint: the map's frame taken as the cloud's, and principal axes laid onto each other in all ways, each
-/// improved on a coarse cloud. Choose by `score_m`, the trimmed mean distance; `rival_score_m` is that of the best start that
-/// ends elsewhere: close to score_m means that the building looks alike from there.
+/// A start without any hint.
 struct CoarseStart {
   Rigid3 T_cloud_map;
-  double score_m = 0, rival_score_m = 0;
-  bool is_identity = false;     ///< the map's own frame was the best start
+  double score_m = 0;           ///< trimmed mean distance to a coarse cloud
+  bool is_identity = false;     ///< the map's own frame taken as the cloud's
 };
-[[nodiscard]] Result<CoarseStart> find_coarse_start(std::span<const Eigen::Vector3d> points_map, std::span<const Eigen::Vector3f> cloud_m,
-                                                    const Eigen::Vector3d& cloud_origin_m);
+/// Up to six that end in different places, best first: the map's frame as the cloud's, and the map's walls laid onto the cloud's in all ways at
+/// the places where most cells meet, each improved by closest points. The coarse scores of the best are close to each other: register from
+/// each, and compare. kInvalid where there is too little to work with.
+[[nodiscard]] Result<std::vector<CoarseStart>> find_coarse_starts(std::span<const Eigen::Vector3d> points_map, std::span<const Eigen::Vector3f> cloud_m,
+                                                                  const Eigen::Vector3d& cloud_origin_m);
+
+/// Mean over all points of the distance to the cloud, none counting more than `max_distance_m`: compares registrations.
+[[nodiscard]] double capped_mean_distance(std::span<const Eigen::Vector3d> points_map, const CloudIndex& cloud, const Rigid3& T_cloud_map,
+                                          double max_distance_m);
 
 }  // namespace camloc::map_tool

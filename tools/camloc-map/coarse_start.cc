@@ -1,33 +1,39 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Where a map lies in a cloud when nobody says it; declared in cloud_registration.h.
-#include <Eigen/Eigenvalues>
+// Where a map lies in a cloud when nobody says it; declared in cloud_registration.h. Buildings have walls in three directions: the
+// map's are laid onto the cloud's in all 24 ways, and for each the translation is found by sliding the map's cells over the
+// cloud's, which works where the map holds only a part of the scan. The best places are improved by closest points.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <limits>
 
 #include "core/geometry/alignment.h"
+#include "tools/camloc-map/cell_correlation.h"
 #include "tools/camloc-map/cloud_registration.h"
 #include "tools/camloc-map/point_cloud.h"
+#include "tools/camloc-map/wall_directions.h"
 
 namespace camloc::map_tool {
 namespace {
 
 constexpr double kCellM = 0.25;            // surfaces count by area, not by how often they were scanned
-constexpr std::size_t kNumSamples = 600;
+constexpr std::size_t kNumSamples = 800;
+constexpr std::size_t kMaxCells = 4000000; // of the grid in which the map is slid; larger sites get larger cells
+constexpr std::size_t kNumImproved = 60, kNumKept = 6;
 constexpr double kTrim = 0.75;
-constexpr int kIterations = 40;
+constexpr int kIterations = 30;
 constexpr double kSamePlaceM = 0.5, kSamePlaceRad = 0.17;
 
-struct Shape {
-  Eigen::Vector3d center, middle;   ///< mean, and the middle of the bounding box along the axes
-  Eigen::Matrix3d axes;             ///< columns, by falling extent, right-handed
+struct Candidate {
+  Rigid3 T_cloud_map;
+  double score = 0;   ///< correlation, then the trimmed mean distance in metres
 };
 
-PointCloud thinned(std::span<const Eigen::Vector3d> points, double cell_m) {
+template <typename Points>
+PointCloud thinned(const Points& points, double cell_m) {
   CloudAccumulator accumulator({cell_m, 1, 1});
-  for (const Eigen::Vector3d& p : points) accumulator.add(p);
+  for (const auto& p : points) accumulator.add(p.template cast<double>());
   return accumulator.finish();
 }
 
@@ -37,24 +43,11 @@ std::vector<Eigen::Vector3d> absolute(const PointCloud& cloud) {
   return points;
 }
 
-Shape shape_of(const std::vector<Eigen::Vector3d>& points) {
-  Shape shape;
-  shape.center.setZero();
-  for (const Eigen::Vector3d& p : points) shape.center += p / static_cast<double>(points.size());
-  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& p : points) moments += (p - shape.center) * (p - shape.center).transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments);
-  shape.axes = solver.eigenvectors().rowwise().reverse();
-  if (shape.axes.determinant() < 0) shape.axes.col(2) *= -1;
-  shape.middle = shape.center;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> along;
-    for (const Eigen::Vector3d& p : points) along.push_back(shape.axes.col(axis).dot(p - shape.center));
-    std::sort(along.begin(), along.end());
-    const std::size_t low = along.size() / 50;
-    shape.middle += 0.5 * (along[low] + along[along.size() - 1 - low]) * shape.axes.col(axis);
-  }
-  return shape;
+std::vector<Eigen::Vector3d> choose(const std::vector<Eigen::Vector3d>& points, std::size_t max_points) {
+  std::vector<Eigen::Vector3d> chosen;
+  const std::size_t count = std::min(max_points, points.size());
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(points[i * points.size() / count]);
+  return chosen;
 }
 
 /// The 24 rotations that map a cube onto itself.
@@ -71,98 +64,95 @@ std::vector<Eigen::Matrix3d> cube_rotations() {
   return rotations;
 }
 
-struct Candidate {
-  Rigid3 T_cloud_map;
-  double score_m = 0;
-  bool is_identity = false;
-};
-
-struct Matched {
-  Eigen::Vector3d p_cloud, p_map;
-  double distance_m;
-};
+bool is_same_place(const Rigid3& a, const Rigid3& b, const Eigen::Vector3d& center_map) {
+  return (a * center_map - b * center_map).norm() < kSamePlaceM && rotation_distance_rad(a.rotation, b.rotation) < kSamePlaceRad;
+}
 
 /// The closest pairs, and their mean distance.
-double match(const std::vector<Eigen::Vector3d>& samples, const CloudIndex& cloud, const Rigid3& T_cloud_map, std::vector<Matched>* pairs) {
+double match(const std::vector<Eigen::Vector3d>& samples, const CloudIndex& cloud, const Rigid3& T_cloud_map, std::vector<PointPair>* pairs) {
   pairs->clear();
   for (const Eigen::Vector3d& p_map : samples) {
-    const auto neighbor = cloud.nearest(T_cloud_map * p_map, 1e6);
-    if (neighbor) pairs->push_back({cloud.points_m()[neighbor->index].cast<double>(), p_map, neighbor->distance_m});
+    if (const auto neighbor = cloud.nearest(T_cloud_map * p_map, 1e6)) pairs->push_back({cloud.points_m()[neighbor->index].cast<double>(), p_map, neighbor->distance_m});
   }
+  if (pairs->empty()) return std::numeric_limits<double>::infinity();
   const auto num_kept = std::max<std::size_t>(1, static_cast<std::size_t>(kTrim * static_cast<double>(pairs->size())));
   std::nth_element(pairs->begin(), pairs->begin() + static_cast<std::ptrdiff_t>(num_kept - 1), pairs->end(),
-                   [](const Matched& a, const Matched& b) { return a.distance_m < b.distance_m; });
+                   [](const PointPair& a, const PointPair& b) { return a.sigma_m < b.sigma_m; });
   pairs->resize(num_kept);
   double sum = 0;
-  for (const Matched& pair : *pairs) sum += pair.distance_m;
+  for (PointPair& pair : *pairs) {
+    sum += pair.sigma_m;
+    pair.sigma_m = 1;
+  }
   return sum / static_cast<double>(num_kept);
 }
 
 /// Iterative closest points, point to point: slow at the end, but it comes from far.
 void improve(const std::vector<Eigen::Vector3d>& samples, const CloudIndex& cloud, Candidate* candidate) {
-  std::vector<Matched> pairs;
-  std::vector<camloc::PointPair> points;
-  candidate->score_m = match(samples, cloud, candidate->T_cloud_map, &pairs);
-  for (int i = 0; i < kIterations; ++i) {
-    points.clear();
-    for (const Matched& pair : pairs) points.push_back({pair.p_cloud, pair.p_map});
-    const Rigid3 aligned = align_rigid(points).T_a_b;
-    const double score_m = match(samples, cloud, aligned, &pairs);
-    if (score_m >= candidate->score_m) return;
-    const bool is_still = score_m > 0.999 * candidate->score_m;
-    candidate->T_cloud_map = aligned;
-    candidate->score_m = score_m;
+  std::vector<PointPair> pairs;
+  candidate->score = match(samples, cloud, candidate->T_cloud_map, &pairs);
+  for (int i = 0; i < kIterations && !pairs.empty(); ++i) {
+    const Rigid3 aligned = align_rigid(pairs).T_a_b;
+    const double score = match(samples, cloud, aligned, &pairs);
+    if (score >= candidate->score) return;
+    const bool is_still = score > 0.998 * candidate->score;
+    *candidate = {aligned, score};
     if (is_still) return;
   }
 }
 
-std::vector<Candidate> candidates_of(const Shape& map, const Shape& cloud, const Eigen::Vector3d& cloud_origin_m) {
+/// The map's walls on the cloud's in all ways, each at the places where most cells meet.
+std::vector<Candidate> slide(const std::vector<Eigen::Vector3d>& samples, const std::vector<Eigen::Vector3d>& map_cells,
+                             const std::vector<Eigen::Vector3d>& cloud_cells) {
+  const Eigen::Matrix3d map_axes = wall_directions(map_cells), cloud_axes = wall_directions(cloud_cells);
+  // The grid stands along the walls, so that a wall is one layer of cells.
+  std::vector<Eigen::Vector3d> turned;
+  for (const Eigen::Vector3d& p : cloud_cells) turned.push_back(cloud_axes.transpose() * p);
+  const CellGrid grid(turned, kCellM, kMaxCells);
   std::vector<Candidate> candidates;
-  candidates.push_back({Rigid3{Eigen::Quaterniond::Identity(), -cloud_origin_m}, 0, true});
-  for (const Eigen::Matrix3d& turn : cube_rotations()) {
-    for (const bool by_center : {true, false}) {
-      Rigid3 T_cloud_map;
-      T_cloud_map.rotation = Eigen::Quaterniond(Eigen::Matrix3d(cloud.axes * turn * map.axes.transpose())).normalized();
-      T_cloud_map.translation = by_center ? cloud.center - T_cloud_map.rotation * map.center : cloud.middle - T_cloud_map.rotation * map.middle;
-      candidates.push_back({T_cloud_map, 0, false});
+  for (const Eigen::Matrix3d& cube : cube_rotations()) {
+    const Eigen::Matrix3d R_grid_map = cube * map_axes.transpose();
+    std::vector<Eigen::Vector3d> points;
+    for (const Eigen::Vector3d& p : samples) points.push_back(R_grid_map * p);
+    for (const CellGrid::Place& place : grid.best_places(points, 5)) {
+      candidates.push_back({{Eigen::Quaterniond(Eigen::Matrix3d(cloud_axes * R_grid_map)).normalized(), cloud_axes * place.translation_m}, place.share});
     }
   }
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  candidates.resize(std::min(candidates.size(), kNumImproved));
   return candidates;
 }
 
 }  // namespace
 
-Result<CoarseStart> find_coarse_start(std::span<const Eigen::Vector3d> points_map, std::span<const Eigen::Vector3f> cloud_m,
-                                      const Eigen::Vector3d& cloud_origin_m) {
-  std::vector<Eigen::Vector3d> cloud_points;
-  for (const Eigen::Vector3f& p : cloud_m) cloud_points.push_back(p.cast<double>());
-  const std::vector<Eigen::Vector3d> cloud_cells = absolute(thinned(cloud_points, kCellM)), map_cells = absolute(thinned(points_map, kCellM));
-  if (map_cells.size() < 4 || cloud_cells.size() < 4) {
+Result<std::vector<CoarseStart>> find_coarse_starts(std::span<const Eigen::Vector3d> points_map, std::span<const Eigen::Vector3f> cloud_m,
+                                                    const Eigen::Vector3d& cloud_origin_m) {
+  const std::vector<Eigen::Vector3d> cloud_cells = absolute(thinned(cloud_m, kCellM / 2)), map_cells = absolute(thinned(points_map, kCellM / 2));
+  if (map_cells.size() < 20 || cloud_cells.size() < 20) {
     return {ErrorCode::kInvalid, "map or cloud is smaller than a metre, too small to find a start; give control points (--points)"};
   }
-  std::vector<Eigen::Vector3d> samples;
-  for (std::size_t i = 0; i < std::min(kNumSamples, map_cells.size()); ++i) samples.push_back(map_cells[i * map_cells.size() / std::min(kNumSamples, map_cells.size())]);
-  const PointCloud coarse = thinned(cloud_points, kCellM / 2);
-  std::vector<Eigen::Vector3f> coarse_m;
-  for (const Eigen::Vector3d& p : absolute(coarse)) coarse_m.push_back(p.cast<float>());
-  const CloudIndex index(coarse_m);
-  std::vector<Candidate> candidates = candidates_of(shape_of(map_cells), shape_of(cloud_cells), cloud_origin_m);
-  for (Candidate& candidate : candidates) improve(samples, index, &candidate);
-  const auto best = std::min_element(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.score_m < b.score_m; });
-  CoarseStart start{best->T_cloud_map, best->score_m, 1e9, best->is_identity};
-  // So that the report can say how far the map lies from where its own frame puts it.
+  const std::vector<Eigen::Vector3d> samples = choose(absolute(thinned(map_cells, kCellM)), kNumSamples);
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : samples) center += p / static_cast<double>(samples.size());
+
   const Rigid3 identity{Eigen::Quaterniond::Identity(), -cloud_origin_m};
-  const Eigen::Vector3d center = shape_of(map_cells).center;
-  for (const Candidate& other : candidates) {
-    const bool is_elsewhere = (other.T_cloud_map * center - start.T_cloud_map * center).norm() > kSamePlaceM ||
-                              rotation_distance_rad(other.T_cloud_map.rotation, start.T_cloud_map.rotation) > kSamePlaceRad;
-    if (is_elsewhere) start.rival_score_m = std::min(start.rival_score_m, other.score_m);
+  std::vector<Candidate> candidates = slide(samples, map_cells, cloud_cells);
+  candidates.push_back({identity, 0});
+  std::vector<Eigen::Vector3f> targets;
+  for (const Eigen::Vector3d& p : cloud_cells) targets.push_back(p.cast<float>());
+  const CloudIndex index(targets);
+  for (Candidate& candidate : candidates) improve(samples, index, &candidate);
+  std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
+
+  std::vector<CoarseStart> starts;
+  for (const Candidate& candidate : candidates) {
+    const auto is_known = [&](const CoarseStart& start) { return is_same_place(start.T_cloud_map, candidate.T_cloud_map, center); };
+    if (starts.size() >= kNumKept || std::any_of(starts.begin(), starts.end(), is_known)) continue;
+    // The map's own frame as it is, so that the report can say how far off it was.
+    const bool is_identity = is_same_place(identity, candidate.T_cloud_map, center);
+    starts.push_back({is_identity ? identity : candidate.T_cloud_map, candidate.score, is_identity});
   }
-  const bool is_near = (identity * center - start.T_cloud_map * center).norm() < kSamePlaceM &&
-                       rotation_distance_rad(identity.rotation, start.T_cloud_map.rotation) < kSamePlaceRad;
-  if (is_near) start.T_cloud_map = identity;
-  start.is_identity = is_near;
-  return start;
+  return starts;
 }
 
 }  // namespace camloc::map_tool

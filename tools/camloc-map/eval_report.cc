@@ -38,7 +38,8 @@ void append_inputs(const EvalSummary& s, std::string* text) {
 void append_alignment(const EvalSummary& s, std::string* text) {
   const Evaluation& e = s.evaluation;
   append(text, "%-22s%s", "start", describe(e.start));
-  if (e.search) append(text, ", %s, %.3f m (next best elsewhere %.3f m)", e.search->is_identity ? "the map's own frame" : "principal axes", e.search->score_m, e.search->rival_score_m);
+  if (e.search) append(text, ": %s, landmarks %.1f cm off (next best place %.1f cm)", e.search->is_identity ? "the map's own frame" : "walls on walls", 100 * e.search->score_m,
+                       100 * e.search->rival_score_m);
   append(text, "\n");
   if (e.registration) {
     const Registration& r = *e.registration;
@@ -96,7 +97,7 @@ Json to_json(const std::optional<double>& value) { return value ? Json(*value) :
 
 Json alignment_json(const Evaluation& e) {
   Json json{{"start", describe(e.start)}};
-  if (e.search) json["search"] = {{"is_map_frame", e.search->is_identity}, {"score_m", e.search->score_m}, {"rival_score_m", e.search->rival_score_m}};
+  if (e.search) json["search"] = {{"is_map_frame", e.search->is_identity}, {"score_m", e.search->score_m}, {"rival_score_m", e.search->rival_score_m}, {"starts", e.search->num_starts}};
   json["T_cloud_map_start"] = to_json(e.T_cloud_map_start);
   json["T_cloud_map"] = to_json(e.T_cloud_map);
   if (e.registration) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <limits>
 #include <numeric>
 
 #include "core/geometry/alignment.h"
@@ -15,6 +16,8 @@ namespace {
 
 constexpr std::size_t kMaxFinalPoints = 50000;     // of the last registration; more change nothing
 constexpr double kScaleTolerance = 0.01;
+constexpr std::size_t kMaxSearchPoints = 3000;     // for each start of a search
+constexpr double kSearchDistanceM = 1.5, kSearchTrim = 0.8;
 constexpr double kPoseLeverM = 1.0;                // what a rotation weighs against a position between two trajectories
 
 [[gnu::format(printf, 1, 2)]] std::string text_of(const char* format, ...) {
@@ -97,8 +100,43 @@ AlignStart choose_start(const EvaluationInput& input, AlignStart wish) {
   return input.map->info().wcs ? AlignStart::kDatum : AlignStart::kSearch;
 }
 
+/// To half a metre for the farthest of the points.
+bool is_same_place(const Rigid3& a, const Rigid3& b, const std::vector<Eigen::Vector3d>& points) {
+  return std::all_of(points.begin(), points.end(), [&](const Eigen::Vector3d& p) { return (a * p - b * p).norm() < 0.5; });
+}
+
+/// Every coarse start is refined; what fits best wins.
+Result<Rigid3> search_start(const EvaluationInput& input, const MapPoints& points, const EvaluationOptions& options, CloudIndex* cloud, SearchOutcome* outcome) {
+  const auto starts = find_coarse_starts(points.landmarks, input.cloud->points_m, input.cloud->origin_m);
+  if (!starts.is_ok()) return starts.status();
+  RegistrationOptions registration;
+  registration.trim = std::min(options.trim, kSearchTrim);
+  registration.max_distance_m = options.max_distance_m;
+  registration.start_distance_m = std::max(kSearchDistanceM, options.max_distance_m);
+  registration.max_points = kMaxSearchPoints;
+  std::vector<Eigen::Vector3d> some;
+  for (std::size_t i = 0; i < points.landmarks.size(); i += points.landmarks.size() / kMaxSearchPoints + 1) some.push_back(points.landmarks[i]);
+  std::vector<CoarseStart> refined;   // score_m is the capped mean distance from here on
+  for (const CoarseStart& start : starts.value()) {
+    const auto result = register_points(some, cloud, {1, start.T_cloud_map}, registration);
+    if (!result.is_ok()) continue;
+    const Rigid3& T_cloud_map = result.value().T_cloud_map.rigid;
+    refined.push_back({T_cloud_map, capped_mean_distance(some, *cloud, T_cloud_map, options.max_distance_m), start.is_identity});
+  }
+  if (refined.empty()) return {ErrorCode::kInvalid, "no place was found where the map fits into the cloud; is it the same site? Control points (--points) would help"};
+  // A map that fits in its own frame is meant to be there.
+  const auto handicapped_m = [](const CoarseStart& start) { return start.score_m * (start.is_identity ? 0.9 : 1); };
+  const CoarseStart best =
+      *std::min_element(refined.begin(), refined.end(), [&](const CoarseStart& a, const CoarseStart& b) { return handicapped_m(a) < handicapped_m(b); });
+  *outcome = {best.score_m, options.max_distance_m, best.is_identity, starts.value().size()};
+  for (const CoarseStart& other : refined) {
+    if (!is_same_place(other.T_cloud_map, best.T_cloud_map, some)) outcome->rival_score_m = std::min(outcome->rival_score_m, other.score_m);
+  }
+  return best.is_identity ? Rigid3{Eigen::Quaterniond::Identity(), -input.cloud->origin_m} : best.T_cloud_map;
+}
+
 /// T_cloud_map relative to the cloud's origin.
-Result<Rigid3> find_start(const EvaluationInput& input, const MapPoints& points, Evaluation* result) {
+Result<Rigid3> find_start(const EvaluationInput& input, const MapPoints& points, const EvaluationOptions& options, CloudIndex* cloud, Evaluation* result) {
   const Eigen::Vector3d& origin_m = input.cloud->origin_m;
   const auto relative = [&](Rigid3 T) { T.translation -= origin_m; return T; };
   switch (result->start) {
@@ -114,10 +152,8 @@ Result<Rigid3> find_start(const EvaluationInput& input, const MapPoints& points,
       if (!input.map->info().wcs) return {ErrorCode::kInvalid, "--align datum: " + input.map->info().path + " has no datum; camloc map georef gives it one"};
       return relative(input.map->info().wcs->T_wcs_map);
     case AlignStart::kAuto: case AlignStart::kSearch: {
-      const auto found = find_coarse_start(points.landmarks, input.cloud->points_m, origin_m);
-      if (!found.is_ok()) return found.status();
-      result->search = found.value();
-      return found.value().T_cloud_map;
+      result->search.emplace();
+      return search_start(input, points, options, cloud, &*result->search);
     }
     case AlignStart::kNone: break;
   }
@@ -125,7 +161,7 @@ Result<Rigid3> find_start(const EvaluationInput& input, const MapPoints& points,
 }
 
 double start_distance_of(AlignStart start, const EvaluationOptions& options) {
-  const double found_m = start == AlignStart::kSearch ? 1.5 : start == AlignStart::kDatum || start == AlignStart::kTrajectory ? 1.0 : 0.5;
+  const double found_m = start == AlignStart::kDatum || start == AlignStart::kTrajectory ? 1.0 : 0.5;
   return std::max(found_m, options.max_distance_m);
 }
 
@@ -243,14 +279,13 @@ Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOp
   result.num_used = points.landmarks.size();
   result.num_keyframes = points.T_map_keyframe.size();
 
-  if (is_stopped("looking for a start ...")) return stopped;
-  result.start = choose_start(input, options.start);
-  const auto start = find_start(input, points, &result);
-  if (!start.is_ok()) return start.status();
-  Rigid3 T_cloud_map = start.value();
-
   if (is_stopped("indexing the cloud ...")) return stopped;
   CloudIndex cloud(input.cloud->points_m);
+  if (is_stopped("looking for a start ...")) return stopped;
+  result.start = choose_start(input, options.start);
+  const auto start = find_start(input, points, options, &cloud, &result);
+  if (!start.is_ok()) return start.status();
+  Rigid3 T_cloud_map = start.value();
   if (options.has_icp) {
     if (is_stopped("aligning ...")) return stopped;
     const auto refined = refine(points, T_cloud_map, options, result.start, &cloud);

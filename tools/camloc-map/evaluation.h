@@ -44,6 +44,14 @@ struct EvaluationInput {
   std::vector<PosePair> poses;     ///< may be empty
 };
 
+/// How sure a search is: mean distances of the landmarks to the cloud, none counting more than max_distance_m, for the start that was
+/// chosen and for the best of the others.
+struct SearchOutcome {
+  double score_m = 0, rival_score_m = 0;
+  bool is_identity = false;   ///< the map's own frame taken as the cloud's
+  std::size_t num_starts = 0;
+};
+
 struct PointResidual {
   std::string name;
   double sigma_m = 0;
@@ -53,7 +61,7 @@ struct PointResidual {
 struct Evaluation {
   std::uint64_t num_landmarks = 0, num_used = 0, num_keyframes = 0;   ///< num_used: with enough observations
   AlignStart start = AlignStart::kNone;           ///< the one that was used
-  std::optional<CoarseStart> search;              ///< of kSearch
+  std::optional<SearchOutcome> search;            ///< of kSearch
   Rigid3 T_cloud_map_start, T_cloud_map;          ///< absolute: with the cloud's origin
   std::optional<Registration> registration;       ///< nothing when there was no ICP
   double moved_m = 0, moved_rad = 0;              ///< by ICP: the middle of the landmarks, and the rotation
