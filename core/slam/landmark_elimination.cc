@@ -5,6 +5,7 @@
 // landmark, E_i = W_i L^-T and the reduced system loses E_i E_j' for each pair of cameras.
 #include "core/slam/landmark_elimination.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace camloc {
@@ -20,12 +21,22 @@ inline void add_product(const Block6x3& A, const Block6x3& B, double* block) {
   Doubles a[3][3];
   std::memcpy(a, A.data(), sizeof(a));
   for (int column = 0; column < 6; ++column, block += 6) {
-    const double b0 = kSign * B(column, 0), b1 = kSign * B(column, 1), b2 = kSign * B(column, 2);
+    const double b0 = B(column, 0), b1 = B(column, 1), b2 = B(column, 2);
     Doubles c[3];
     std::memcpy(c, block, sizeof(c));
-    for (int i = 0; i < 3; ++i) c[i] += a[0][i] * b0 + a[1][i] * b1 + a[2][i] * b2;
+    for (int i = 0; i < 3; ++i) {
+      const Doubles product = a[0][i] * b0 + a[1][i] * b1 + a[2][i] * b2;
+      if constexpr (kSign > 0) c[i] += product;
+      else c[i] -= product;
+    }
     std::memcpy(block, c, sizeof(c));
   }
+}
+
+/// A block that is needed soon: they are anywhere in the system, and waiting for them was half of the time.
+inline void prefetch_block(const double* block) {
+  constexpr int kCacheLineDoubles = 8;
+  for (int k = 0; k < 36 + kCacheLineDoubles; k += kCacheLineDoubles) __builtin_prefetch(block + std::min(k, 35), 1);
 }
 
 /// Symmetric 3x3 block of a landmark and its gradient.
@@ -160,9 +171,12 @@ double LandmarkEliminator::eliminate(const LandmarkObservations& landmark, const
     E.col(1) = L.l10 * E.col(0) + L.l11 * E.col(1);
     E.col(0) *= L.l00;
     reduced->system.gradient(entries_[j].camera).noalias() -= E * y;
+    blocks_.resize(j + 1);
     for (std::size_t i = 0; i <= j; ++i) {
-      add_product<-1>(entries_[i].E, E, reduced->system.block(entries_[i].camera, entries_[j].camera));
+      blocks_[i] = reduced->system.block(entries_[i].camera, entries_[j].camera);
+      prefetch_block(blocks_[i]);
     }
+    for (std::size_t i = 0; i <= j; ++i) add_product<-1>(entries_[i].E, E, blocks_[i]);
   }
   return cost;
 }

@@ -45,7 +45,6 @@ class LandmarkEliminator {
   [[nodiscard]] double cost(const LandmarkObservations& landmark, const Eigen::Vector3d& X) const;
 
  private:
-  /// A free camera's part: N = J_p' W J_p R' (camera axes times map axes), from which its 6x3 block is -[N; p x N].
   struct Entry {
     std::uint32_t camera;
     Eigen::Matrix<double, 6, 3> E;  ///< block of camera and landmark, later times L^-T
@@ -56,7 +55,8 @@ class LandmarkEliminator {
 
   const BundleModel& model_;
   const std::vector<BundleCamera>& cameras_;
-  std::vector<Entry> entries_;  ///< by camera
+  std::vector<Entry> entries_;   ///< by camera
+  std::vector<double*> blocks_;  ///< of one camera with those before it
 };
 
 }  // namespace camloc

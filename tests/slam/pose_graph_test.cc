@@ -6,6 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+#include <numbers>
+
 #include "core/geometry/pose_jacobian.h"
 #include "core/slam/pose_graph_terms.h"
 #include "tests/geometry/generated.h"
@@ -102,6 +106,102 @@ TEST(PoseGraph, SpreadsTheErrorOfALoop) {
   EXPECT_LT(error_m(loop.graph.T_map_pose, loop.truth), 0.5 * before);
   EXPECT_LT(pose_error(loop.truth[0], loop.graph.T_map_pose[0]).norm(), 1e-15);
   EXPECT_LT(report.edge_chi2.back(), 16.8);  // 99 % of chi2 with 6 degrees of freedom
+}
+
+
+TEST(PoseGraph, KernelWithstandsFalseLoops) {
+  std::mt19937 rng(4);
+  Loop loop = make_loop(rng, 200, 0.01, 0.002);
+  const Rigid3 wrong{exp_so3({0, 0, 1}), {0.5, 0.5, 0}};
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    loop.graph.edges.push_back({20 * i, 20 * i + 70, wrong, diagonal_covariance(0.02, 0.01)});
+  }
+  PoseGraph without_kernel = loop.graph, without_false_loops = loop.graph;
+  without_false_loops.edges.resize(200);
+  PoseGraphOptions options;
+  options.kernel_sigmas = 3;
+  options.max_iterations = 100;
+  const PoseGraphReport report = optimize_pose_graph(options, &loop.graph);
+  optimize_pose_graph({}, &without_kernel);
+  optimize_pose_graph({}, &without_false_loops);
+  EXPECT_LT(error_m(loop.graph.T_map_pose, without_false_loops.T_map_pose), 0.05);
+  EXPECT_GT(error_m(without_kernel.T_map_pose, loop.truth), 1.0);
+  for (std::size_t i = 0; i < 200; ++i) EXPECT_LT(report.edge_chi2[i], 40);
+  for (std::size_t i = 200; i < 205; ++i) EXPECT_GT(report.edge_chi2[i], 1000);
+}
+
+TEST(PoseGraph, PriorsHoldAFreeGraph) {
+  std::mt19937 rng(5);
+  Loop loop = make_loop(rng, 100, 0.01, 0.002);
+  loop.graph.is_fixed[0] = 0;
+  const Rigid3 T_off{exp_so3({0.1, 0.2, 0.3}), {3, 2, 1}};
+  for (Rigid3& T : loop.graph.T_map_pose) T = T_off * T;
+  for (const std::uint32_t i : {0U, 50U}) loop.graph.priors.push_back({i, loop.truth[i], diagonal_covariance(0.01, 0.002)});
+  const PoseGraphReport report = optimize_pose_graph({}, &loop.graph);
+  EXPECT_TRUE(report.is_converged);
+  EXPECT_LT(error_m(loop.graph.T_map_pose, loop.truth), 0.15);
+  ASSERT_EQ(report.prior_chi2.size(), 2U);
+  EXPECT_LT(report.prior_chi2[0], 16.8);
+  double cost = report.prior_chi2[0] + report.prior_chi2[1];
+  for (const double chi2 : report.edge_chi2) cost += chi2;
+  EXPECT_NEAR(cost, report.final_cost, 1e-9 * cost);
+}
+
+TEST(PoseGraph, BadMeasurementsAreLeftOut) {
+  std::mt19937 rng(6);
+  Loop loop = make_loop(rng, 50, 0.01, 0.002);
+  PoseGraph bad = loop.graph;
+  bad.edges.push_back({3, 30, Rigid3{}, Matrix6d::Zero()});
+  bad.edges.push_back({3, 30, Rigid3{}, -Matrix6d::Identity()});
+  bad.edges.push_back({3, 30, Rigid3{}, Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN())});
+  bad.edges.push_back({3, 30, Rigid3{Eigen::Quaterniond::Identity(), {std::numeric_limits<double>::infinity(), 0, 0}},
+                       Matrix6d::Identity()});
+  const PoseGraphReport report = optimize_pose_graph({}, &bad);
+  optimize_pose_graph({}, &loop.graph);
+  for (std::size_t i = 50; i < 54; ++i) EXPECT_TRUE(std::isinf(report.edge_chi2[i]));
+  EXPECT_LT(error_m(bad.T_map_pose, loop.graph.T_map_pose), 1e-9);
+}
+
+TEST(PoseGraph, PoseWithoutMeasurementKeepsItsPlace) {
+  std::mt19937 rng(7);
+  Loop loop = make_loop(rng, 50, 0.01, 0.002);
+  const Rigid3 lonely{exp_so3({1, 2, 3}), {4, 5, 6}};
+  loop.graph.T_map_pose.push_back(lonely);
+  loop.graph.is_fixed.push_back(0);
+  optimize_pose_graph({}, &loop.graph);
+  EXPECT_EQ(loop.graph.T_map_pose.back().translation, lonely.translation);
+}
+
+TEST(PoseGraph, NothingToDo) {
+  PoseGraph empty;
+  EXPECT_TRUE(optimize_pose_graph({}, &empty).is_converged);
+  std::mt19937 rng(8);
+  Loop loop = make_loop(rng, 20, 0.01, 0.002);
+  std::fill(loop.graph.is_fixed.begin(), loop.graph.is_fixed.end(), std::uint8_t{1});
+  const PoseGraphReport report = optimize_pose_graph({}, &loop.graph);
+  EXPECT_TRUE(report.is_converged);
+  EXPECT_EQ(report.initial_cost, report.final_cost);
+  EXPECT_EQ(report.edge_chi2.size(), loop.graph.edges.size());
+}
+
+TEST(PoseGraph, LargeGraphHasAnHonestCostAndTheSameBitsTwice) {
+  std::mt19937 rng(9);
+  Loop loop = make_loop(rng, 5000, 0.005, 0.001);
+  std::uniform_int_distribution<std::uint32_t> any(0, 4999), near(2, 10);
+  for (int k = 0; k < 45000; ++k) {
+    const std::uint32_t i = any(rng), j = (i + near(rng)) % 5000;
+    const Rigid3 measured = testing::disturbed(rng, loop.truth[i].inverse() * loop.truth[j], 0.005, 0.001);
+    loop.graph.edges.push_back({i, j, measured, diagonal_covariance(0.005, 0.001)});
+  }
+  PoseGraph again = loop.graph;
+  const PoseGraphReport report = optimize_pose_graph({}, &loop.graph);
+  optimize_pose_graph({}, &again);
+  EXPECT_TRUE(report.is_converged);
+  EXPECT_NEAR(report.final_cost / (6.0 * (50000 - 5000)), 1.0, 0.02);  // residuals minus unknowns
+  for (std::size_t i = 0; i < 5000; ++i) {
+    ASSERT_EQ(loop.graph.T_map_pose[i].translation, again.T_map_pose[i].translation);
+    ASSERT_EQ(loop.graph.T_map_pose[i].rotation.coeffs(), again.T_map_pose[i].rotation.coeffs());
+  }
 }
 
 }  // namespace
