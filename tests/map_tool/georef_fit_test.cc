@@ -225,6 +225,7 @@ TEST(GeorefFit, WarnsOfAScaleThatIsOff) {
 TEST(GeorefFit, RefusesWhatDoesNotDetermineAMotion) {
   EXPECT_TRUE(contains(fit_georef({}, {}).problem, "0 common control points; at least 3"));
   EXPECT_TRUE(contains(fit_georef(make_survey(2).points, {}).problem, "2 common control points"));
+  EXPECT_TRUE(contains(fit_georef(make_survey(2001).points, {}).problem, "at most 2000"));
   Survey line = make_survey(5);
   for (std::size_t i = 0; i < 5; ++i) {
     const Eigen::Vector3d p_map(2.0 * static_cast<double>(i), 1, 1);

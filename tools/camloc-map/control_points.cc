@@ -20,7 +20,7 @@ namespace {
 constexpr double kMaxCoordinateM = 1e8;
 constexpr double kMaxSigma = 100;
 constexpr std::size_t kMaxNameBytes = 63;
-constexpr std::size_t kMaxLines = 100'000;
+constexpr std::size_t kMaxLines = 10'000;
 constexpr std::size_t kMaxFileBytes = std::size_t{16} << 20;
 
 using Row = std::vector<std::string_view>;

@@ -21,6 +21,7 @@ constexpr double kMaxTurnSigmaRad = 0.05;  ///< 3 degrees: 50 cm at 10 m
 constexpr double kHighSigmas = 4;
 constexpr double kMaxScaleError = 0.01;
 constexpr std::size_t kMaxNamesInMessage = 8;
+constexpr std::size_t kMaxPoints = 2000;  ///< each is left out once
 
 template <typename... Values>
 std::string text_of(const char* format, Values... values) {
@@ -69,6 +70,7 @@ std::string explain_rank(std::span<const PointPair> pairs) {
     return text_of("%zu common control point%s; at least 3 that are not on a line are needed, better 4 or more so that errors are found",
                    pairs.size(), pairs.size() == 1 ? "" : "s");
   }
+  if (pairs.size() > kMaxPoints) return text_of("%zu common control points; choose at most %zu", pairs.size(), kMaxPoints);
   const Alignment alignment = align_rigid(pairs);
   if (alignment.rank == AlignmentRank::kPosition) return "all control points are in one place";
   const Eigen::Matrix3d turn = alignment.covariance.bottomRightCorner<3, 3>();
