@@ -67,7 +67,7 @@ struct OrbExtractor::Impl {
     blur_level(image);
     const float scale = pyramid.scale(level);
     for (const Corner& corner : corners) {
-      Keypoint keypoint{static_cast<float>(corner.x) * scale, static_cast<float>(corner.y) * scale, 0,
+      Keypoint keypoint{(static_cast<float>(corner.x) + 0.5F) * scale - 0.5F, (static_cast<float>(corner.y) + 0.5F) * scale - 0.5F, 0,
                         static_cast<float>(corner.score), static_cast<std::uint8_t>(level)};
       features.descriptors.push_back(describe_at(image, corner.x, corner.y, &keypoint));
       features.keypoints.push_back(keypoint);

@@ -16,7 +16,7 @@
 namespace camloc {
 
 struct ProjectionLimits {
-  double max_range_m = 10.0;
+  double max_range_m = 40.0;
   double max_view_angle_rad = 1.05;  ///< between mean viewing direction and the view
   int level_margin = 1;              ///< pyramid levels beyond those its sightings predict
 };

@@ -14,6 +14,8 @@ constexpr std::size_t kMaxPending = 8;
 constexpr std::uint32_t kMaxPendingGap = 6;      // keyframes between two opinions on one loop
 constexpr std::uint32_t kMinLinkShared = 60;     // landmarks that make two keyframes linked in the pose graph
 constexpr float kFuseRadiusPx = 8;
+constexpr double kMaxLooseness = 20;
+constexpr double kLinkM = 0.006, kLinkRad = 0.005;   // what a link of full strength is good for
 
 Matrix6d diagonal_covariance(double sigma_m, double sigma_rad) {
   Matrix6d covariance = Matrix6d::Zero();
@@ -21,8 +23,13 @@ Matrix6d diagonal_covariance(double sigma_m, double sigma_rad) {
   return covariance;
 }
 
-// How well neighbouring keyframes know their relative pose.
-Matrix6d link_covariance(const Rigid3& T_i_j) { return diagonal_covariance(0.006 + 0.01 * T_i_j.translation.norm(), 0.004); }
+// The fewer landmarks two keyframes share, the worse they know their relative pose; a handful may be a slip.
+double looseness_of(std::uint32_t num_shared) { return std::clamp(150.0 / std::max(num_shared, 1U), 1.0, kMaxLooseness); }
+
+Matrix6d link_covariance(const Rigid3& T_i_j, std::uint32_t num_shared) {
+  const double looseness = looseness_of(num_shared);
+  return diagonal_covariance(looseness * (kLinkM + 0.01 * T_i_j.translation.norm()), looseness * kLinkRad);
+}
 
 Matrix6d turned(const Matrix6d& covariance, const Eigen::Quaterniond& rotation) {
   Matrix6d turn = Matrix6d::Zero();
@@ -37,40 +44,51 @@ LoopCloser::LoopCloser(const LoopOptions& options, SlamMap* map, ViewRegistratio
 
 LoopReport LoopCloser::consider(std::uint32_t keyframe, const PlaceIndex& places) {
   LoopReport report;
+  note_links(keyframe);
   std::optional<LoopMatch> match = find(keyframe, places);
   if (!match) return report;
-  const bool is_other_segment = map_->keyframe(match->place).segment != map_->keyframe(keyframe).segment;
-  const double drift = is_other_segment ? 0 : drift_ratio(*match);
+  report.is_found = true;
   report.place = match->place;
-  if (drift > 3) {
-    report.is_refused = true;
-    return report;
-  }
-  std::erase_if(pending_, [&](const LoopMatch& p) { return keyframe - p.keyframe > kMaxPendingGap || !agrees(p, *match); });
+  report.T_place_keyframe = match->T_place_keyframe;
+  report.num_inliers = match->registration.num_inliers();
+  const double strain = match->strain;
+  std::erase_if(pending_, [&](const LoopMatch& p) { return keyframe > p.keyframe + kMaxPendingGap || !agrees(p, *match); });
   pending_.push_back(std::move(*match));
   if (pending_.size() > kMaxPending) pending_.erase(pending_.begin());
-  const int num_needed = is_other_segment ? options_.num_confirmations_between_segments : drift > 1 ? options_.num_confirmations : 1;
-  if (static_cast<int>(pending_.size()) < num_needed) return report;
+  if (!is_confirmed(strain)) return report;
 
   const std::vector<LoopMatch> matches = std::move(pending_);
   pending_.clear();
   const LoopMatch& last = matches.back();
-  report.correction_m = (last.T_correction * map_->keyframe(keyframe).view.T_map_camera.translation -
-                         map_->keyframe(keyframe).view.T_map_camera.translation).norm();
+  const Eigen::Vector3d position = map_->keyframe(keyframe).view.T_map_camera.translation;
+  report.correction_m = (last.T_correction * position - position).norm();
   report.correction_rad = rotation_distance_rad(last.T_correction.rotation, Eigen::Quaterniond::Identity());
-  if (is_other_segment) {
-    // The older segment keeps its frame.
-    const std::uint32_t now = map_->keyframe(keyframe).segment, then = map_->keyframe(last.place).segment;
-    map_->join_segments(now, then, last.T_correction);
-    report.is_joined = true;
-  }
-  if (!spread_error(matches)) {
-    report.is_refused = !is_other_segment;
-    return report;
-  }
-  fuse(matches);
-  report.is_closed = true;
+  const std::uint32_t now = map_->keyframe(keyframe).segment, then = map_->keyframe(last.place).segment;
+  report.is_joined = now != then;
+  if (report.is_joined) map_->join_segments(now, then, last.T_correction);
+  report.is_closed = spread_error(matches);
+  report.is_refused = !report.is_closed && !report.is_joined;
+  if (report.is_closed || report.is_joined) fuse(matches);
   return report;
+}
+
+void LoopCloser::note_links(std::uint32_t keyframe) {
+  const auto neighbours = map_->covisible(keyframe, 1);
+  if (looseness_.size() <= keyframe) looseness_.resize(keyframe + 1, kMaxLooseness);   // the first of a segment has no link
+  looseness_[keyframe] = looseness_of(neighbours.empty() ? 0 : neighbours.front().num_shared);
+}
+
+// Do the opinions gathered so far suffice?
+bool LoopCloser::is_confirmed(double strain) const {
+  const LoopMatch& first = pending_.front();
+  const LoopMatch& last = pending_.back();
+  const auto count = static_cast<int>(pending_.size());
+  if (map_->keyframe(last.place).segment == map_->keyframe(last.keyframe).segment)
+    return count >= (strain > 1 ? options_.num_confirmations : 1);
+  if (begin_between(last.place, last.keyframe) != nullptr) return count >= options_.num_confirmations_within_reach;
+  const double walked = (map_->keyframe(first.keyframe).view.T_map_camera.translation -
+                         map_->keyframe(last.keyframe).view.T_map_camera.translation).norm();
+  return count >= options_.num_confirmations_out_of_reach && walked >= options_.min_joined_path_m;
 }
 
 std::optional<LoopMatch> LoopCloser::find(std::uint32_t keyframe, const PlaceIndex& places) {
@@ -81,39 +99,42 @@ std::optional<LoopMatch> LoopCloser::find(std::uint32_t keyframe, const PlaceInd
     is_near[c.keyframe] = 1;
     for (const CovisibleKeyframe& next : map_->covisible(c.keyframe, 2 * options_.max_shared)) is_near[next.keyframe] = 1;
   }
-  Registration best;
-  std::uint32_t best_place = 0;
-  int rival_inliers = 0;
-  std::vector<std::pair<std::uint32_t, Registration>> found;
+  struct Candidate {
+    std::uint32_t place;
+    double strain;
+    Registration found;
+  };
+  std::vector<Candidate> candidates;
   std::size_t num_tried = 0;
-  for (const RankedPlace& place : places.query(query.view.features.descriptors, 6 * options_.num_candidates)) {
-    if (place.keyframe >= is_near.size() || is_near[place.keyframe] != 0) continue;
+  for (const RankedPlace& ranked : places.query(query.view.features.descriptors, options_.num_retrieved)) {
+    if (ranked.keyframe >= is_near.size() || is_near[ranked.keyframe] != 0 || !may_see(keyframe, ranked.keyframe)) continue;
     if (num_tried++ == options_.num_candidates) break;
-    Registration registered = register_to_place(keyframe, place.keyframe, query.frame);
-    if (!registered.is_found) continue;
-    if (registered.num_inliers() > best.num_inliers()) {
-      best = registered;
-      best_place = place.keyframe;
-    }
-    found.emplace_back(place.keyframe, std::move(registered));
+    Registration found = register_to_place(keyframe, ranked.keyframe, query.frame);
+    if (!found.is_found) continue;
+    const double how_strained = strain(keyframe, ranked.keyframe, found.T_map_camera);
+    if (how_strained <= 3) candidates.push_back({ranked.keyframe, how_strained, std::move(found)});
   }
-  if (!is_convincing(best)) return std::nullopt;
-  for (const auto& [place, other] : found) {
-    if (map_->keyframe(place).segment != map_->keyframe(best_place).segment) continue;
+  if (candidates.empty()) return std::nullopt;
+  auto& best = *std::max_element(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return a.found.num_inliers() < b.found.num_inliers();
+  });
+  if (!is_convincing(best.found)) return std::nullopt;
+  for (const Candidate& other : candidates) {
+    const bool is_comparable = map_->keyframe(other.place).segment == map_->keyframe(best.place).segment;
     const bool is_elsewhere =
-        (other.T_map_camera.translation - best.T_map_camera.translation).norm() > options_.rival_distance_m ||
-        rotation_distance_rad(other.T_map_camera.rotation, best.T_map_camera.rotation) > options_.rival_angle_rad;
-    if (is_elsewhere) rival_inliers = std::max(rival_inliers, other.num_inliers());
+        (other.found.T_map_camera.translation - best.found.T_map_camera.translation).norm() > options_.rival_distance_m ||
+        rotation_distance_rad(other.found.T_map_camera.rotation, best.found.T_map_camera.rotation) > options_.rival_angle_rad;
+    if (is_comparable && is_elsewhere && other.found.num_inliers() > options_.max_rival_share * best.found.num_inliers()) return std::nullopt;
   }
-  if (rival_inliers > options_.max_rival_share * best.num_inliers()) return std::nullopt;
   LoopMatch match;
   match.keyframe = keyframe;
-  match.place = best_place;
-  const Rigid3 T_map_place = map_->keyframe(best_place).view.T_map_camera;
-  match.T_place_keyframe = T_map_place.inverse() * best.T_map_camera;
-  match.covariance = turned(best.covariance, T_map_place.rotation.conjugate()) + diagonal_covariance(0.005, 0.002);
-  match.T_correction = best.T_map_camera * query.view.T_map_camera.inverse();
-  match.registration = std::move(best);
+  match.place = best.place;
+  match.strain = best.strain;
+  const Rigid3 T_map_place = map_->keyframe(best.place).view.T_map_camera;
+  match.T_place_keyframe = T_map_place.inverse() * best.found.T_map_camera;
+  match.covariance = turned(best.found.covariance, T_map_place.rotation.conjugate()) + diagonal_covariance(0.005, 0.002);
+  match.T_correction = best.found.T_map_camera * query.view.T_map_camera.inverse();
+  match.registration = std::move(best.found);
   return match;
 }
 
@@ -132,22 +153,66 @@ bool LoopCloser::is_convincing(const Registration& found) const {
          found.depth_agreement >= options_.min_depth_agreement && found.spread >= options_.min_spread;
 }
 
-double LoopCloser::path_m(std::uint32_t from, std::uint32_t to) const {
-  double length = 0;
-  for (std::uint32_t k = from + 1; k <= to; ++k)
-    length += (map_->keyframe(k).view.T_map_camera.translation - map_->keyframe(k - 1).view.T_map_camera.translation).norm();
-  return length;
+// What dead reckoning from one keyframe to a later one is good for.
+LoopCloser::Drift LoopCloser::drift(std::uint32_t from, std::uint32_t to) const {
+  Drift drift{options_.drift_m, options_.drift_rad};
+  double loose = 0;
+  for (std::uint32_t k = from + 1; k <= to; ++k) {
+    const Rigid3 step = map_->keyframe(k - 1).view.T_map_camera.inverse() * map_->keyframe(k).view.T_map_camera;
+    const double walked = step.translation.norm(), turned_rad = rotation_distance_rad(step.rotation, Eigen::Quaterniond::Identity());
+    drift.sigma_m += options_.drift_per_m * walked;
+    drift.sigma_rad += options_.drift_rad_per_m * walked + options_.drift_rad_per_rad * turned_rad;
+    loose += (looseness_[k] - 1) * (looseness_[k] - 1);
+  }
+  drift.sigma_m += kLinkM * std::sqrt(loose);
+  drift.sigma_rad += kLinkRad * std::sqrt(loose);
+  return drift;
 }
 
-// The correction in units of what the drift explains.
-double LoopCloser::drift_ratio(const LoopMatch& match) const {
-  const Rigid3 T_map_now = map_->keyframe(match.keyframe).view.T_map_camera;
-  const Rigid3 T_map_then = match.T_correction * T_map_now;
-  const double walked = path_m(std::min(match.place, match.keyframe), std::max(match.place, match.keyframe));
-  const double moved_m = (T_map_then.translation - T_map_now.translation).norm();
-  const double moved_rad = rotation_distance_rad(T_map_then.rotation, T_map_now.rotation);
-  return std::max(moved_m / (options_.drift_m + options_.drift_per_m * walked),
-                  moved_rad / (options_.drift_rad + options_.drift_rad_per_m * walked));
+// Could the camera have come within sight of that place?
+bool LoopCloser::may_see(std::uint32_t keyframe, std::uint32_t place) const {
+  const Eigen::Vector3d here = map_->keyframe(keyframe).view.T_map_camera.translation;
+  const Eigen::Vector3d there = map_->keyframe(place).view.T_map_camera.translation;
+  if (map_->keyframe(place).segment == map_->keyframe(keyframe).segment) {
+    const Drift expected = drift(std::min(place, keyframe), std::max(place, keyframe));
+    return (here - there).norm() <= options_.view_range_m + 3 * expected.sigma_m;
+  }
+  const SegmentBegin* begin = begin_between(place, keyframe);
+  if (begin == nullptr) return true;
+  const Rigid3 T_map_lost = map_->keyframe(begin->keyframe_before).view.T_map_camera * begin->T_before_camera;
+  const Rigid3 T_map_found = map_->keyframe(begin->first_keyframe).view.T_map_camera;
+  const bool is_place_before = map_->keyframe(place).segment == map_->keyframe(begin->keyframe_before).segment;
+  const double apart = is_place_before ? (there - T_map_lost.translation).norm() - (here - T_map_found.translation).norm()
+                                       : (there - T_map_found.translation).norm() - (here - T_map_lost.translation).norm();
+  return apart <= options_.view_range_m + options_.reach_m + options_.reach_m_s * begin->gap_s;
+}
+
+// How the later one of two neighbouring segments began.
+const SegmentBegin* LoopCloser::begin_between(std::uint32_t a, std::uint32_t b) const {
+  const std::uint32_t segment_a = map_->keyframe(a).segment, segment_b = map_->keyframe(b).segment;
+  for (const SegmentBegin& begin : begins_) {
+    if (!begin.has_before) continue;
+    const std::uint32_t before = map_->keyframe(begin.keyframe_before).segment, after = map_->keyframe(begin.first_keyframe).segment;
+    if ((before == segment_a && after == segment_b) || (before == segment_b && after == segment_a)) return &begin;
+  }
+  return nullptr;
+}
+
+double LoopCloser::strain(std::uint32_t keyframe, std::uint32_t place, const Rigid3& T_map_keyframe) const {
+  const Rigid3 T_map_now = map_->keyframe(keyframe).view.T_map_camera;
+  if (map_->keyframe(place).segment == map_->keyframe(keyframe).segment) {
+    const Drift expected = drift(std::min(place, keyframe), std::max(place, keyframe));
+    return std::max((T_map_keyframe.translation - T_map_now.translation).norm() / expected.sigma_m,
+                    rotation_distance_rad(T_map_keyframe.rotation, T_map_now.rotation) / expected.sigma_rad);
+  }
+  const SegmentBegin* begin = begin_between(place, keyframe);
+  if (begin == nullptr) return 0;
+  const Rigid3 T_correction = T_map_keyframe * T_map_now.inverse();   // from the segment of the keyframe to that of the place
+  Eigen::Vector3d lost = map_->keyframe(begin->keyframe_before).view.T_map_camera * begin->T_before_camera.translation;
+  Eigen::Vector3d found = map_->keyframe(begin->first_keyframe).view.T_map_camera.translation;
+  if (map_->keyframe(begin->keyframe_before).segment == map_->keyframe(keyframe).segment) lost = T_correction * lost;
+  else found = T_correction * found;
+  return (found - lost).norm() <= options_.reach_m + options_.reach_m_s * begin->gap_s ? 0 : 10;
 }
 
 // Both move the newer one's keyframe to the same pose.
@@ -169,21 +234,21 @@ bool LoopCloser::spread_error(const std::vector<LoopMatch>& matches) {
   }
   const auto first = std::find(graph.is_fixed.begin(), graph.is_fixed.end(), 0);
   *first = 1;
-  const auto link = [&](std::uint32_t i, std::uint32_t j) {
-    const Rigid3 T_i_j = graph.T_map_pose[i].inverse() * graph.T_map_pose[j];
-    graph.edges.push_back({i, j, T_i_j, link_covariance(T_i_j)});
+  const auto link = [&](const CovisibleKeyframe& c, std::uint32_t j) {
+    const Rigid3 T_i_j = graph.T_map_pose[c.keyframe].inverse() * graph.T_map_pose[j];
+    graph.edges.push_back({c.keyframe, j, T_i_j, link_covariance(T_i_j, c.num_shared)});
   };
   for (std::uint32_t k = 1; k < map_->keyframes().size(); ++k) {
     if (map_->keyframe(k).segment != segment) continue;
     bool has_link = false;
     for (const CovisibleKeyframe& c : map_->covisible(k, kMinLinkShared)) {
-      if (c.keyframe < k) link(c.keyframe, k);
+      if (c.keyframe < k) link(c, k);
       has_link = has_link || c.keyframe < k;
     }
     if (has_link) continue;
     for (const CovisibleKeyframe& c : map_->covisible(k, 1)) {
       if (c.keyframe > k) continue;
-      link(c.keyframe, k);
+      link(c, k);
       break;
     }
   }

@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "core/slam/far_landmarks.h"
 #include "core/slam/loop_closing.h"
 #include "core/slam/map_adjustment.h"
 #include "core/slam/place_index.h"
@@ -32,6 +33,7 @@ struct SlamOptions {
   TrackerOptions tracker;
   LocalAdjustmentOptions local_adjustment;
   LoopOptions loops;
+  FarLandmarkOptions far_landmarks;
   std::size_t num_fused_neighbours = 5;
   int max_lost_views = 10;             ///< after so many in a row a new segment begins
   std::uint32_t min_segment_features = 200;  ///< features with depth that a view needs to begin one
@@ -108,6 +110,7 @@ class Slam {
 
   bool begin_segment(std::uint64_t frame, ViewFeatures view, ViewReport* report);
   void add_keyframe(std::uint64_t frame, ViewFeatures view, const Registration& tracked, ViewReport* report);
+  void join_leftover_segments();
   void remember(std::uint64_t frame, const ViewFeatures& view, const Registration& tracked, bool is_keyframe);
   [[nodiscard]] BundleOptions bundle_options() const;
   [[nodiscard]] Rigid3 final_pose(const TrackedView& view) const;

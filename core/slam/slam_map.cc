@@ -42,6 +42,15 @@ std::uint32_t SlamMap::add_landmark(Sighting first) {
   return index;
 }
 
+std::uint32_t SlamMap::add_landmark(const Eigen::Vector3d& position_m, Sighting first, Sighting second) {
+  const auto index = static_cast<std::uint32_t>(landmarks_.size());
+  landmarks_.emplace_back().position_m = position_m;
+  add_sighting(index, first);
+  add_sighting(index, second);
+  summarize(index);
+  return index;
+}
+
 void SlamMap::add_sighting(std::uint32_t landmark, Sighting sighting) {
   SlamKeyframe& keyframe = keyframes_[sighting.keyframe];
   auto& sightings = landmarks_[landmark].sightings;

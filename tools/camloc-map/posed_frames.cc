@@ -49,15 +49,15 @@ Result<std::vector<std::optional<Rigid3>>> recorded_poses(const PosedFramesReque
   return result;
 }
 
-// "start:stop:step" runs of equal distance, as short as that gets.
-std::string slices_of(const std::map<std::uint64_t, Rigid3>& frames) {
+// "start:stop:step" runs of equal distance, as short as that gets; `frames` ascends.
+std::string slices_of(const std::vector<std::uint64_t>& frames) {
   std::string text;
-  for (auto it = frames.begin(); it != frames.end();) {
-    const std::uint64_t start = it->first;
+  for (std::size_t i = 0; i < frames.size();) {
+    const std::uint64_t start = frames[i];
     std::uint64_t last = start, step = 1;
-    if (++it != frames.end()) {
-      step = it->first - start;
-      for (; it != frames.end() && it->first == last + step; ++it) last = it->first;
+    if (++i < frames.size()) {
+      step = frames[i] - start;
+      for (; i < frames.size() && frames[i] == last + step; ++i) last = frames[i];
     }
     if (!text.empty()) text += ",";
     text += std::to_string(start) + ":" + std::to_string(last + 1) + ":" + std::to_string(step);
@@ -65,7 +65,27 @@ std::string slices_of(const std::map<std::uint64_t, Rigid3>& frames) {
   return text;
 }
 
+std::string url_of(const std::string& folder, const std::vector<std::uint64_t>& frames) {
+  return "replay://" + folder + "?frames=" + slices_of(frames);
+}
+
 }  // namespace
+
+Result<SelectedFrames> find_frames(const PosedFramesRequest& request) {
+  const auto folder = folder_of(request.sequence);
+  if (!folder.is_ok()) return folder.status();
+  const auto sequence = read_sequence(folder.value());
+  if (!sequence.is_ok()) return sequence.status();
+  const auto selected = select_frames(request.include, request.exclude, sequence.value().frames.size());
+  if (!selected.is_ok()) return selected.status();
+  SelectedFrames result;
+  result.folder = folder.value();
+  result.num_recorded = sequence.value().frames.size();
+  result.num_selected = selected.value().size();
+  for (const SequenceFrame& frame : sequence.value().frames) result.has_depth = result.has_depth || !frame.depth_path.empty();
+  result.url = url_of(folder.value(), {selected.value().begin(), selected.value().end()});
+  return result;
+}
 
 Result<PosedFrames> find_posed_frames(const PosedFramesRequest& request, const RgbdCamera& camera) {
   const auto folder = folder_of(request.sequence);
@@ -97,7 +117,9 @@ Result<PosedFrames> find_posed_frames(const PosedFramesRequest& request, const R
             request.sequence + ": none of the " + std::to_string(result.num_selected) + " selected frames has a pose in " +
                 (are_embedded ? std::string("the recording") : request.poses) + "; check --frames and the stamps of --poses"};
   }
-  result.url = "replay://" + folder.value() + "?frames=" + slices_of(result.T_map_camera_of_frame);
+  std::vector<std::uint64_t> with_pose;
+  for (const auto& [frame, T_map_camera] : result.T_map_camera_of_frame) with_pose.push_back(frame);
+  result.url = url_of(folder.value(), with_pose);
   return result;
 }
 

@@ -26,6 +26,17 @@ struct PosedFramesRequest {
       PoseCamera::kAuto;  ///< whose poses they are; kAuto: embedded ones as the camera file says, files colour
 };
 
+/// The chosen frames of a recording, whatever is known about where they were.
+struct SelectedFrames {
+  std::string folder;
+  std::string url;   ///< for open_frame_source
+  std::uint64_t num_recorded = 0, num_selected = 0;
+  bool has_depth = false;   ///< any of the recording has
+};
+
+/// Reads `sequence`, `include` and `exclude` of the request only.
+[[nodiscard]] Result<SelectedFrames> find_frames(const PosedFramesRequest& request);
+
 struct PosedFrames {
   std::string folder;
   std::string url;                                        ///< for open_frame_source: only frames with a pose

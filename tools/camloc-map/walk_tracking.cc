@@ -79,6 +79,11 @@ class Pass {
   }
 
   Status process(const Frame& frame, ViewLogWriter* log) {
+    if (frame.depth.empty()) {
+      ++num_done_;
+      ++end_.num_without_depth;
+      return Status::ok();
+    }
     if (const Status checked = extractor_.check(frame); !checked.is_ok()) return checked;
     const LoggedView logged{frame.sequence, extractor_.extract(frame), sample_surface(request_.camera, frame.depth)};
     check_->see_frame(frame, logged.view.size(), num_with_depth(logged.view));

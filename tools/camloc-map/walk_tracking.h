@@ -32,6 +32,7 @@ struct WalkEnd {
   bool is_interrupted = false;        ///< Ctrl-C: what is there is a map of the first part
   std::uint64_t num_resumed = 0;      ///< views that came from the log
   std::uint64_t num_broken = 0;       ///< frames that could not be read
+  std::uint64_t num_without_depth = 0;   ///< colour images without a depth image
   std::string first_broken;
 };
 

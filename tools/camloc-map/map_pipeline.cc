@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/camloc-map/map_pipeline.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <unordered_map>
+
+#include "core/map/map_writer.h"
+#include "drivers/frame_source.h"
+#include "tools/camloc-map/view_log.h"
+#include "tools/camloc-map/walk_tracking.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/progress_line.h"
+#include "tools/common/trajectory_file.h"
+
+namespace camloc::map_tool {
+namespace {
+
+using tools::InterruptGuard;
+using tools::ProgressLine;
+
+constexpr std::uint32_t kMinSegmentKeyframes = 4;   // a shorter stretch is no sub-map
+
+Status interrupted_status(const std::string& map_path) {
+  const bool is_there = std::filesystem::exists(map_path);
+  return {ErrorCode::kIo, "interrupted; " + map_path + (is_there ? " is unchanged" : " was not written")};
+}
+
+std::string folder_name(const std::string& folder) {
+  return std::filesystem::weakly_canonical(folder).filename().string().substr(0, 63);
+}
+
+/// out.cmap, out.2.cmap, out.3.cmap, ...
+std::string segment_path(const std::string& map_path, std::size_t number) {
+  if (number == 0) return map_path;
+  const std::filesystem::path path(map_path);
+  return (path.parent_path() / (path.stem().string() + "." + std::to_string(number + 1) + path.extension().string())).string();
+}
+
+Status finish_map(const BuildRequest& request, const std::string& name, const std::string& path, MapBuilder* builder,
+                  BuildSummary* summary) {
+  auto map = builder->finish(&summary->build);
+  if (!map.is_ok()) return map.status();
+  map->name = name;
+  if (const Status written = write_map(map.value(), path); !written.is_ok()) return written;
+  summary->map_path = path;
+  summary->pose_sigma_m = map->pose_sigma_m;
+  summary->pose_sigma_rad = map->pose_sigma_rad;
+  (void)request;
+  return Status::ok();
+}
+
+// --- Poses are given -------------------------------------------------------------------------------------------------
+
+/// Feeds every posed frame to the builder. Broken frames are counted, a wrong image size ends the build.
+Status add_frames(const PosedFrames& frames, MapBuilder* builder, BuildSummary* summary, ProgressLine* progress) {
+  auto source = open_frame_source(frames.url);
+  if (!source.is_ok()) return source.status();
+  FrameBuffer buffer;
+  for (std::uint64_t done = 0; !InterruptGuard::is_interrupted();) {
+    const Status status = source.value()->next(&buffer, std::chrono::milliseconds(1000));
+    if (status.code() == ErrorCode::kEnd) return Status::ok();
+    if (status.code() == ErrorCode::kTimeout) continue;
+    progress->show(++done, std::to_string(builder->progress().num_landmarks_before) + " landmarks");
+    if (status.code() == ErrorCode::kCorrupt) {
+      if (summary->num_broken++ == 0) summary->first_broken = status.message();
+      continue;
+    }
+    if (!status.is_ok()) return status;
+    const auto pose = frames.T_map_camera_of_frame.find(buffer.sequence);
+    if (pose == frames.T_map_camera_of_frame.end()) continue;
+    if (buffer.depth.pixels.empty() || buffer.depth.width == 0) {
+      ++summary->num_without_depth;
+      continue;
+    }
+    if (const Status added = builder->add_frame(buffer.view(), pose->second); !added.is_ok()) return added;
+  }
+  return Status::ok();
+}
+
+Status build_from_poses(const BuildRequest& request, BuildSummary* summary) {
+  const auto frames = find_posed_frames(request.frames, request.camera);
+  if (!frames.is_ok()) return frames.status();
+  summary->num_recorded = frames->num_recorded;
+  summary->num_selected = frames->num_selected;
+  summary->num_without_pose = frames->num_without_pose;
+  MapBuilder builder(request.camera, request.map);
+  ProgressLine progress(frames->T_map_camera_of_frame.size());
+  if (const Status added = add_frames(frames.value(), &builder, summary, &progress); !added.is_ok()) return added;
+  if (InterruptGuard::is_interrupted()) return interrupted_status(request.map_path);
+  if (summary->num_broken == frames->T_map_camera_of_frame.size()) {
+    return {ErrorCode::kCorrupt, "none of " + std::to_string(summary->num_broken) + " frames could be read, the first because of " +
+                                     summary->first_broken};
+  }
+  progress.say("choosing landmarks and keyframes, training words ...");
+  return finish_map(request, request.name.empty() ? folder_name(frames->folder) : request.name, request.map_path, &builder, summary);
+}
+
+// --- SLAM finds the poses --------------------------------------------------------------------------------------------
+
+/// The second pass: what was seen, from where it was seen, becomes a map.
+Status map_segment(const BuildRequest& request, const WalkRequest& walk, const SlamResult& result, std::size_t number,
+                   const std::string& name, BuildSummary* summary) {
+  std::unordered_map<std::uint64_t, const SlamPose*> pose_of_frame;
+  for (const SlamPose& pose : result.poses) {
+    if (pose.segment == result.segments[number].id) pose_of_frame.emplace(pose.frame, &pose);
+  }
+  auto log = ViewLogReader::open(walk.log_path, walk_identity(walk));
+  if (!log.is_ok()) return log.status();
+  MapBuilder builder(request.camera, request.map);
+  ProgressLine progress(pose_of_frame.size(), "mapping view");
+  LoggedView logged;
+  for (std::uint64_t done = 0; log->next(&logged).is_ok();) {
+    const auto pose = pose_of_frame.find(logged.frame);
+    if (pose == pose_of_frame.end()) continue;
+    logged.view.T_map_camera = pose->second->T_map_camera;
+    builder.add_view(logged.view);
+    progress.show(++done, std::to_string(builder.progress().num_landmarks_before) + " landmarks");
+  }
+  progress.say("choosing landmarks and keyframes, training words ...");
+  return finish_map(request, name, segment_path(request.map_path, number), &builder, summary);
+}
+
+Status write_trajectory(const BuildRequest& request, const SlamResult& result, std::uint64_t num_frames) {
+  if (request.trajectory_path.empty() || result.segments.empty()) return Status::ok();
+  tools::EstimatedTrajectory trajectory;
+  trajectory.num_frames = num_frames;
+  if (request.camera.poses_are_of_depth_camera) trajectory.T_color_depth = request.camera.T_color_depth;
+  for (const SlamPose& pose : result.poses) {
+    if (pose.segment == result.segments.front().id) trajectory.poses.push_back({pose.stamp_ns, pose.T_map_camera, std::nullopt});
+  }
+  return tools::write_text_file(request.trajectory_path, format_trajectory(trajectory));
+}
+
+/// One map a segment, the largest at the path the user asked for. Returns an error only for that one.
+Status write_segments(const BuildRequest& request, const WalkRequest& walk, const SlamResult& result, const std::string& name,
+                      BuildSummary* summary) {
+  for (std::size_t number = result.segments.size(); number-- > 0;) {
+    const SlamResult::Segment& segment = result.segments[number];
+    if (number > 0 && segment.num_keyframes < kMinSegmentKeyframes) {
+      summary->submaps.push_back({"", segment.num_keyframes, segment.num_views});
+      continue;
+    }
+    BuildSummary of_segment;
+    const Status mapped = map_segment(request, walk, result, number, name, number == 0 ? summary : &of_segment);
+    if (number == 0) return mapped;
+    summary->submaps.push_back({mapped.is_ok() ? of_segment.map_path : "", segment.num_keyframes, segment.num_views});
+  }
+  return Status::ok();
+}
+
+Status build_from_walk(const BuildRequest& request, BuildSummary* summary) {
+  const auto frames = find_frames(request.frames);
+  if (!frames.is_ok()) return frames.status();
+  if (!frames->has_depth) return {ErrorCode::kInvalid, request.frames.sequence + ": has no depth images; a map needs depth"};
+  summary->num_recorded = frames->num_recorded;
+  summary->num_selected = frames->num_selected;
+
+  const WalkRequest walk{frames->url, frames->num_selected, request.camera, request.map.orb, request.slam,
+                         view_log_path(request.map_path), request.is_resumed};
+  Slam slam(request.camera, request.slam);
+  WalkCheck check(request.camera);
+  const auto end = track_walk(walk, &slam, &check);
+  if (!end.is_ok()) return end.status();
+  summary->is_partial = end->is_interrupted;
+  summary->num_broken = end->num_broken;
+  summary->num_without_depth = end->num_without_depth;
+  summary->first_broken = end->first_broken;
+
+  ProgressLine progress(0, "adjusting");
+  summary->slam = SlamSummary{};
+  const SlamResult result = slam.finish([&](int iteration, double) {
+    progress.say("adjusting all keyframes and landmarks, iteration " + std::to_string(iteration) + " ...");
+    return true;
+  });
+  if (result.segments.empty()) {
+    return {ErrorCode::kInvalid, request.frames.sequence + ": no frame shows enough texture with depth to begin a map"};
+  }
+  if (const Status usable = check.verdict(result); !usable.is_ok()) return usable;
+  summary->slam->counts = slam.counts();
+  summary->slam->fit = result.segments.front().fit;
+  summary->slam->weak_spots = check.weak_spots();
+  summary->slam->num_stamp_jumps = check.num_stamp_jumps();
+  const std::string name = request.name.empty() ? folder_name(frames->folder) : request.name;
+  if (const Status written = write_segments(request, walk, result, name, summary); !written.is_ok()) return written;
+  if (const Status written = write_trajectory(request, result, slam.counts().num_views); !written.is_ok()) return written;
+  if (!summary->is_partial) std::filesystem::remove(walk.log_path);
+  return Status::ok();
+}
+
+}  // namespace
+
+std::string view_log_path(const std::string& map_path) { return map_path + ".views"; }
+
+Status build_map(const BuildRequest& request, BuildSummary* summary) {
+  const auto start = std::chrono::steady_clock::now();
+  const InterruptGuard guard;
+  summary->map_path = request.map_path;
+  summary->sequence = request.frames.sequence;
+  summary->camera = request.camera.name;
+  const Status built = request.frames.poses.empty() ? build_from_walk(request, summary) : build_from_poses(request, summary);
+  summary->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return built;
+}
+
+}  // namespace camloc::map_tool
