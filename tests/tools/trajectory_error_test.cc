@@ -32,7 +32,7 @@ EstimatedTrajectory off_by(const std::vector<double>& errors_m) {
 }
 
 TEST(TrajectoryErrorTest, StatisticsAndSharesOfAllFrames) {
-  const TrajectoryErrors e = compare(off_by({0.01, 0.03, 0.07, 0.2, 0.5}), reference, 10, false);
+  const TrajectoryErrors e = compare(off_by({0.01, 0.03, 0.07, 0.2, 0.5}), reference, 10);
   EXPECT_EQ(e.num_frames, 10U);
   EXPECT_EQ(e.num_localized, 5U);
   EXPECT_EQ(e.num_compared, 5U);
@@ -50,7 +50,7 @@ TEST(TrajectoryErrorTest, StatisticsAndSharesOfAllFrames) {
 TEST(TrajectoryErrorTest, ATurnAloneMisleads) {
   EstimatedTrajectory estimate = off_by({0, 0});
   estimate.poses[0].T_map_camera.rotation *= Eigen::Quaterniond(Eigen::AngleAxisd(11 * std::numbers::pi / 180, Eigen::Vector3d::UnitY()));
-  const TrajectoryErrors e = compare(estimate, reference, 2, false);
+  const TrajectoryErrors e = compare(estimate, reference, 2);
   EXPECT_NEAR(e.rotation_deg.max, 11, 1e-6);
   EXPECT_EQ(e.num_misleading, 1U);
   EXPECT_NEAR(e.share_within[3], 0.5, 1e-9);
@@ -60,8 +60,8 @@ TEST(TrajectoryErrorTest, AlignmentTakesOutARigidMotion) {
   EstimatedTrajectory estimate = off_by(std::vector<double>(20, 0.0));
   const Rigid3 T_moved_reference{Eigen::Quaterniond(Eigen::AngleAxisd(1.0, Eigen::Vector3d(1, 2, 3).normalized())), {5, -3, 2}};
   for (EstimatedPose& pose : estimate.poses) pose.T_map_camera = T_moved_reference * pose.T_map_camera;
-  EXPECT_EQ(compare(estimate, reference, 20, false).num_misleading, 20U);
-  const TrajectoryErrors e = compare(estimate, reference, 20, true);
+  EXPECT_EQ(compare(estimate, reference, 20).num_misleading, 20U);
+  const TrajectoryErrors e = compare(estimate, reference, 20, align_by_positions(estimate, reference));
   EXPECT_LT(e.translation_m.max, 1e-6);
   EXPECT_LT(e.rotation_deg.max, 1e-4);
   EXPECT_LT((e.T_reference_estimate->translation - T_moved_reference.inverse().translation).norm(), 1e-6);
@@ -80,18 +80,18 @@ TEST(TrajectoryErrorTest, HonestCovariancesGiveHonestNees) {
     const Vector6d error = pose_error(truth_at(pose.stamp_ns), pose.T_map_camera);
     expected_sum += (error.array().square() / covariance.diagonal().array()).sum();
   }
-  const TrajectoryErrors e = compare(estimate, reference, 2000, false);
+  const TrajectoryErrors e = compare(estimate, reference, 2000);
   EXPECT_EQ(e.num_with_covariance, 2000U);
   EXPECT_NEAR(e.nees_mean, expected_sum / 2000, 1e-6);
   EXPECT_GT(e.share_inside_95, 0.95);  // only half of the six directions were disturbed
 }
 
 TEST(TrajectoryErrorTest, NothingToCompare) {
-  const TrajectoryErrors none = compare({}, reference, 0, true);
+  const TrajectoryErrors none = compare({}, reference, 0, align_by_poses({}, reference));
   EXPECT_EQ(none.num_compared, 0U);
   EXPECT_EQ(none.share_within[0], 0);
   const auto no_reference = [](std::int64_t) { return std::optional<Rigid3>(); };
-  const TrajectoryErrors e = compare(off_by({0, 0}), no_reference, 2, false);
+  const TrajectoryErrors e = compare(off_by({0, 0}), no_reference, 2);
   EXPECT_EQ(e.num_localized, 2U);
   EXPECT_EQ(e.num_compared, 0U);
 }

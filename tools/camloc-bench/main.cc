@@ -175,7 +175,7 @@ camloc::Status bench(const BenchArguments& arguments) {
   }
   if (!truth.empty()) {
     for (Contestant& contestant : contestants) {
-      contestant.errors = camloc::tools::compare(contestant.trajectory, [&](std::int64_t stamp_ns) { return camloc::pose_at(truth, stamp_ns); }, num_frames, false);
+      contestant.errors = camloc::tools::compare(contestant.trajectory, [&](std::int64_t stamp_ns) { return camloc::pose_at(truth, stamp_ns); }, num_frames);
     }
   }
   if (arguments.is_json) print_json(contestants, num_frames, arguments);

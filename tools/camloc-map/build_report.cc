@@ -18,7 +18,7 @@ double bytes_per_landmark(const BuildSummary& s) {
 }
 
 [[gnu::format(printf, 2, 3)]] void append(std::string* text, const char* format, ...) {
-  char line[256];
+  char line[512];
   va_list arguments;
   va_start(arguments, format);
   std::vsnprintf(line, sizeof line, format, arguments);
@@ -27,6 +27,65 @@ double bytes_per_landmark(const BuildSummary& s) {
 }
 
 unsigned long long count(std::uint64_t value) { return value; }
+
+constexpr std::size_t kMaxSpotsShown = 8;
+
+void append_slam(const BuildSummary& s, std::string* text) {
+  const SlamSummary& slam = *s.slam;
+  const SlamCounts& c = slam.counts;
+  append(text, "%-22s%u of %u, lost %u times\n", "frames tracked", c.num_views - c.num_lost, c.num_views, c.num_losses);
+  append(text, "%-22s%u, of %u views each on average\n", "SLAM keyframes", c.num_keyframes, c.num_views / std::max(c.num_keyframes, 1U));
+  append(text, "%-22s%u closed, %u refused\n", "loops", c.num_loops, c.num_loops_refused);
+  append(text, "%-22smedian %.2f px, 90 %% below %.2f px (%llu sightings)\n", "reprojection error", slam.fit.median_px, slam.fit.p90_px,
+         count(slam.fit.num_sightings));
+  append(text, "%-22smedian %.1f mm\n", "depth error", 1000 * slam.fit.median_depth_m);
+  append(text, "%-22s%s\n", "vertical", slam.up_source.empty() ? "unknown: no floor in view; z is that of the first camera" : slam.up_source.c_str());
+}
+
+void append_submaps(const BuildSummary& s, std::string* text) {
+  if (s.submaps.empty()) return;
+  append(text, "%zu further segment%s could not be joined to the map: no place in common was seen with certainty\n", s.submaps.size(),
+         s.submaps.size() == 1 ? "" : "s");
+  for (const SubmapSummary& submap : s.submaps) {
+    append(text, "  %-20s%u views, %u keyframes\n", submap.map_path.empty() ? "(too short, left out)" : submap.map_path.c_str(),
+           submap.num_views, submap.num_keyframes);
+  }
+}
+
+// The longest spots, in the order of the walk.
+void append_weak_spots(const std::vector<WeakSpot>& all, std::string* text) {
+  if (all.empty()) return;
+  std::vector<WeakSpot> shown = all;
+  const auto length = [](const WeakSpot& w) { return w.last_frame - w.first_frame; };
+  std::stable_sort(shown.begin(), shown.end(), [&](const WeakSpot& a, const WeakSpot& b) { return length(a) > length(b); });
+  if (shown.size() > kMaxSpotsShown) shown.resize(kMaxSpotsShown);
+  std::sort(shown.begin(), shown.end(), [](const WeakSpot& a, const WeakSpot& b) { return a.first_frame < b.first_frame; });
+  append(text, "weak spots (%zu%s)\n", all.size(), all.size() > shown.size() ? ", the longest shown" : "");
+  for (const WeakSpot& w : shown) {
+    append(text, "  frames %llu to %llu: %s; %s\n", count(w.first_frame), count(w.last_frame), w.what.c_str(), w.advice.c_str());
+  }
+}
+
+nlohmann::ordered_json slam_json(const SlamSummary& slam) {
+  const SlamCounts& c = slam.counts;
+  nlohmann::ordered_json json;
+  json["views"] = c.num_views;
+  json["lost"] = c.num_lost;
+  json["losses"] = c.num_losses;
+  json["keyframes"] = c.num_keyframes;
+  json["landmarks"] = c.num_landmarks;
+  json["loops"] = {{"closed", c.num_loops}, {"refused", c.num_loops_refused}};
+  json["segments"] = {{"begun", c.num_segments}, {"joined", c.num_joined}};
+  json["reprojection_error_px"] = {{"median", slam.fit.median_px}, {"p90", slam.fit.p90_px}};
+  json["depth_error_m"] = {{"median", slam.fit.median_depth_m}};
+  json["stamp_jumps"] = slam.num_stamp_jumps;
+  json["resumed_views"] = slam.num_resumed;
+  json["up_source"] = slam.up_source;
+  json["weak_spots"] = nlohmann::ordered_json::array();
+  for (const WeakSpot& w : slam.weak_spots)
+    json["weak_spots"].push_back({{"first_frame", w.first_frame}, {"last_frame", w.last_frame}, {"what", w.what}, {"advice", w.advice}});
+  return json;
+}
 
 }  // namespace
 
@@ -38,6 +97,7 @@ std::string format_table(const BuildSummary& s) {
          count(s.num_selected));
   append(&text, "%-22s%llu without pose, %llu without depth, %llu broken\n", "frames skipped", count(s.num_without_pose),
          count(s.num_without_depth), count(s.num_broken));
+  if (s.slam) append_slam(s, &text);
   append(&text, "%-22s%llu\n", "observations", count(b.num_observations));
   append(&text, "%-22s%u of %u\n", "landmarks kept", b.num_landmarks, b.num_landmarks_before);
   append(&text, "%-22s%u\n", "descriptors", b.num_descriptors);
@@ -50,7 +110,10 @@ std::string format_table(const BuildSummary& s) {
   } else {
     append(&text, "%-22sunknown: no two views see the same place at different times\n", "pose inconsistency");
   }
-  append(&text, "%-22s%.1f s\n", "time", s.seconds);
+  append(&text, "%-22s%.1f s, %.0f frames/s\n", "time", s.seconds, static_cast<double>(b.num_frames) / std::max(s.seconds, 1e-3));
+  append_submaps(s, &text);
+  if (s.slam) append_weak_spots(s.slam->weak_spots, &text);
+  if (s.is_partial) append(&text, "interrupted: this is a map of the first part; the same command with --resume goes on\n");
   return text;
 }
 
@@ -62,6 +125,11 @@ std::string format_json(const BuildSummary& s) {
   json["camera"] = s.camera;
   json["frames"] = {{"recorded", s.num_recorded},         {"selected", s.num_selected},           {"used", b.num_frames},
                     {"without_pose", s.num_without_pose}, {"without_depth", s.num_without_depth}, {"broken", s.num_broken}};
+  json["is_partial"] = s.is_partial;
+  if (s.slam) json["slam"] = slam_json(*s.slam);
+  json["submaps"] = nlohmann::ordered_json::array();
+  for (const SubmapSummary& submap : s.submaps)
+    json["submaps"].push_back({{"map", submap.map_path}, {"keyframes", submap.num_keyframes}, {"views", submap.num_views}});
   json["observations"] = b.num_observations;
   json["landmarks"] = {{"before", b.num_landmarks_before}, {"kept", b.num_landmarks}};
   json["descriptors"] = b.num_descriptors;

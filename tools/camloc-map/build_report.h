@@ -5,17 +5,40 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/map/map_builder.h"
 #include "core/map/map_data.h"
+#include "core/slam/slam.h"
+#include "tools/camloc-map/walk_check.h"
 
 namespace camloc::map_tool {
+
+/// What SLAM says about a walk without poses.
+struct SlamSummary {
+  SlamCounts counts;
+  MapFit fit;                          ///< of the largest segment
+  std::vector<WeakSpot> weak_spots;
+  std::uint64_t num_stamp_jumps = 0;
+  std::uint64_t num_resumed = 0;       ///< views taken from an interrupted build
+  std::string up_source;               ///< what the vertical was found by, empty: not found
+};
+
+/// A stretch of the walk that hangs together with nothing else.
+struct SubmapSummary {
+  std::string map_path;                ///< empty: too short for a map
+  std::uint32_t num_keyframes = 0, num_views = 0;
+};
 
 struct BuildSummary {
   std::string map_path, sequence, camera;
   std::uint64_t num_recorded = 0, num_selected = 0, num_without_pose = 0, num_without_depth = 0, num_broken = 0;
   std::string first_broken;  ///< what was wrong with the first broken frame
+  bool is_partial = false;   ///< interrupted: a map of the first part
+  std::optional<SlamSummary> slam;
+  std::vector<SubmapSummary> submaps;   ///< besides the map itself
   MapBuildReport build;
   double pose_sigma_m = 0, pose_sigma_rad = 0;
   double seconds = 0;

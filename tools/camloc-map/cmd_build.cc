@@ -2,119 +2,65 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // camloc-map build: a recorded RGB-D sequence with poses becomes a map file.
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 
-#include "core/map/map_builder.h"
-#include "core/map/map_writer.h"
 #include "drivers/camera_file.h"
-#include "drivers/frame_source.h"
 #include "tools/camloc-map/build_report.h"
 #include "tools/camloc-map/commands.h"
-#include "tools/camloc-map/posed_frames.h"
+#include "tools/camloc-map/map_pipeline.h"
 #include "tools/common/command_line.h"
-#include "tools/common/interrupt.h"
 #include "tools/common/output_path.h"
-#include "tools/common/progress_line.h"
 
 namespace camloc::map_tool {
 namespace {
 
-using tools::InterruptGuard;
-using tools::ProgressLine;
-
 constexpr const char* kFooter =
-    "Example: a map from every frame but each 50th\n"
-    "  camloc-map build --sequence replay://data/kitchen --camera config/cameras/7scenes.toml --poses embedded \\\n"
-    "      --exclude ::50 --out kitchen.cmap\n"
-    "Ctrl-C stops without touching an existing map. Exit code: 0 done, 1 failed, 2 wrong usage or configuration.";
+    "Examples\n"
+    "  camloc-map build --sequence walk/ --camera camera.toml --out building.cmap\n"
+    "  camloc-map build --sequence data/kitchen --camera config/cameras/7scenes.toml --poses embedded --exclude ::50 \\\n"
+    "      --out kitchen.cmap\n"
+    "Without --poses SLAM finds out where the camera was. Ctrl-C finishes a map of what was seen so far, and --resume goes on from\n"
+    "there; with --poses it stops without touching an existing map. Exit code: 0 done, 1 failed, 2 wrong usage or configuration.";
 
 struct BuildArguments {
-  PosedFramesRequest frames;
-  std::string camera_path, map_path, name;
-  std::uint64_t max_bytes = 0;
+  BuildRequest request;
+  std::string camera_path;
+  std::string adjustment = "depth", tracking = "depth";
   bool is_json = false;
 };
 
-Status interrupted_status(const std::string& map_path) {
-  const bool is_there = std::filesystem::exists(map_path);
-  return {ErrorCode::kIo, "interrupted; " + map_path + (is_there ? " is unchanged" : " was not written")};
-}
-
-/// Feeds every posed frame to the builder. Broken frames are counted, a wrong image size ends the build.
-Status add_frames(const PosedFrames& frames, MapBuilder* builder, BuildSummary* summary, ProgressLine* progress) {
-  auto source = open_frame_source(frames.url);
-  if (!source.is_ok()) return source.status();
-  FrameBuffer buffer;
-  for (std::uint64_t done = 0; !InterruptGuard::is_interrupted();) {
-    const Status status = source.value()->next(&buffer, std::chrono::milliseconds(1000));
-    if (status.code() == ErrorCode::kEnd) return Status::ok();
-    if (status.code() == ErrorCode::kTimeout) continue;
-    progress->show(++done, std::to_string(builder->progress().num_landmarks_before) + " landmarks");
-    if (status.code() == ErrorCode::kCorrupt) {
-      if (summary->num_broken++ == 0) summary->first_broken = status.message();
-      continue;
-    }
-    if (!status.is_ok()) return status;
-    const auto pose = frames.T_map_camera_of_frame.find(buffer.sequence);
-    if (pose == frames.T_map_camera_of_frame.end()) continue;
-    if (buffer.depth.pixels.empty() || buffer.depth.width == 0) {
-      ++summary->num_without_depth;
-      continue;
-    }
-    if (const Status added = builder->add_frame(buffer.view(), pose->second); !added.is_ok()) return added;
+Status check_arguments(const BuildArguments& arguments) {
+  const BuildRequest& request = arguments.request;
+  if (const Status output = tools::check_output_path("--out", request.map_path); !output.is_ok()) return output;
+  const bool has_poses = !request.frames.poses.empty();
+  if (has_poses && request.is_resumed) return {ErrorCode::kInvalid, "--resume: goes with a build without --poses"};
+  if (has_poses && !request.trajectory_path.empty())
+    return {ErrorCode::kInvalid, "--trajectory: with --poses the trajectory is known already"};
+  if (!request.trajectory_path.empty()) {
+    if (const Status output = tools::check_output_path("--trajectory", request.trajectory_path); !output.is_ok()) return output;
   }
-  return Status::ok();
-}
-
-Status build(const BuildArguments& arguments, const RgbdCamera& camera, const PosedFrames& frames, BuildSummary* summary) {
-  const auto start = std::chrono::steady_clock::now();
-  const InterruptGuard guard;
-  MapBuildOptions options;
-  options.max_bytes = arguments.max_bytes;
-  MapBuilder builder(camera, options);
-  ProgressLine progress(frames.T_map_camera_of_frame.size());
-  if (const Status added = add_frames(frames, &builder, summary, &progress); !added.is_ok()) return added;
-  if (InterruptGuard::is_interrupted()) return interrupted_status(arguments.map_path);
-  if (const auto num_usable = frames.T_map_camera_of_frame.size() - summary->num_broken; num_usable == 0) {
-    return {ErrorCode::kCorrupt, "none of " + std::to_string(summary->num_broken) + " frames could be read, the first because of " +
-                                     summary->first_broken};
-  }
-  progress.say("choosing landmarks and keyframes, training words ...");
-  auto map = builder.finish(&summary->build);
-  if (!map.is_ok()) return map.status();
-  map->name = arguments.name;
-  if (InterruptGuard::is_interrupted()) return interrupted_status(arguments.map_path);
-  if (const Status written = write_map(map.value(), arguments.map_path); !written.is_ok()) return written;
-  summary->pose_sigma_m = map->pose_sigma_m;
-  summary->pose_sigma_rad = map->pose_sigma_rad;
-  summary->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (request.is_resumed && !std::filesystem::exists(view_log_path(request.map_path)))
+    return {ErrorCode::kInvalid, "--resume: there is no interrupted build of " + request.map_path + "; run it without --resume"};
   return Status::ok();
 }
 
 int run(BuildArguments arguments) {
+  BuildRequest& request = arguments.request;
   const auto camera = read_camera_file(arguments.camera_path);
   if (!camera.is_ok()) return report_error(camera.status(), 2);
-  if (const Status output = tools::check_output_path("--out", arguments.map_path); !output.is_ok()) return report_error(output, 2);
-  const auto frames = find_posed_frames(arguments.frames, camera.value());
-  if (!frames.is_ok()) return report_error(frames.status(), frames.status().code() == ErrorCode::kInvalid ? 2 : 1);
-  if (arguments.name.empty()) {
-    arguments.name = std::filesystem::weakly_canonical(frames.value().folder).filename().string().substr(0, 63);
-  }
+  request.camera = camera.value();
+  if (const Status checked = check_arguments(arguments); !checked.is_ok()) return report_error(checked, 2);
+  request.slam.use_depth_in_adjustment = arguments.adjustment == "depth";
+  request.slam.use_depth_in_tracking = arguments.tracking == "depth";
   BuildSummary summary;
-  summary.map_path = arguments.map_path;
-  summary.sequence = arguments.frames.sequence;
-  summary.camera = camera.value().name;
-  summary.num_recorded = frames.value().num_recorded;
-  summary.num_selected = frames.value().num_selected;
-  summary.num_without_pose = frames.value().num_without_pose;
-  if (const Status built = build(arguments, camera.value(), frames.value(), &summary); !built.is_ok()) {
+  if (const Status built = build_map(request, &summary); !built.is_ok()) {
     return report_error(built, built.code() == ErrorCode::kInvalid ? 2 : 1);
   }
   if (summary.num_broken > 0) {
-    tools::print_error("camloc-map", std::to_string(summary.num_broken) + " of " + std::to_string(frames.value().T_map_camera_of_frame.size()) +
+    tools::print_error("camloc-map", std::to_string(summary.num_broken) + " of " + std::to_string(summary.num_selected) +
                                          " frames left out because they could not be read, the first: " + summary.first_broken);
   }
   const std::string text = arguments.is_json ? format_json(summary) : format_table(summary);
@@ -125,31 +71,37 @@ int run(BuildArguments arguments) {
 
 void add_build_command(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<BuildArguments>();
-  CLI::App* command = app.add_subcommand("build", "Makes a map file from a recorded RGB-D sequence with poses.");
+  BuildRequest& request = arguments->request;
+  request.frames.poses.clear();
+  CLI::App* command = app.add_subcommand("build", "Makes a map file from a recorded RGB-D walk.");
   command->footer(kFooter);
-  command
-      ->add_option("--sequence", arguments->frames.sequence, "Recording: replay://DIR or a folder, TUM RGB-D or 7-Scenes layout")
+  command->add_option("--sequence", request.frames.sequence, "Recording: replay://DIR or a folder, TUM RGB-D or 7-Scenes layout")
       ->required();
   command->add_option("--camera", arguments->camera_path, "Calibration: our TOML, or YAML of kalibr, ROS, OpenCV")->required();
+  command->add_option("--out", request.map_path, "Map file to write; replaced only when the new one is complete")->required();
+  command->add_option("--poses", request.frames.poses,
+                      "Poses that are known: 'embedded' (those of the recording), a trajectory file in TUM format, or colmap:DIR (a "
+                      "COLMAP text model of the colour images); default: found by SLAM");
+  command->add_option("--frames", request.frames.include, "Frames to use: start:stop:step[,...], Python slices (default: all)");
+  command->add_option("--exclude", request.frames.exclude, "Frames to leave out, same notation");
   command
-      ->add_option("--poses", arguments->frames.poses, "'embedded' (those of the recording) or a trajectory file in TUM format")
-      ->required();
-  command->add_option("--out", arguments->map_path, "Map file to write; replaced only when the new one is complete")->required();
-  command->add_option("--frames", arguments->frames.include,
-                      "Frames to use: start:stop:step[,...], Python slices (default: all)");
-  command->add_option("--exclude", arguments->frames.exclude, "Frames to leave out, same notation");
-  command
-      ->add_option("--max-bytes", arguments->max_bytes,
-                   "Size limit of the file; the most useful landmarks are kept (accepts KB, MB)")
+      ->add_option("--max-bytes", request.map.max_bytes, "Size limit of the file; the most useful landmarks are kept (accepts KB, MB)")
       ->transform(CLI::AsSizeValue(true));
-  command->add_option("--name", arguments->name, "Name of the map, at most 63 bytes (default: the folder's)")
+  command->add_option("--name", request.name, "Name of the map, at most 63 bytes (default: the folder's)")
       ->check([](const std::string& name) { return name.size() <= 63 ? std::string() : std::string("longer than 63 bytes"); });
   const std::map<std::string, PoseCamera> cameras{
       {"auto", PoseCamera::kAuto}, {"color", PoseCamera::kColor}, {"depth", PoseCamera::kDepth}};
   command
-      ->add_option("--poses-of", arguments->frames.pose_camera,
+      ->add_option("--poses-of", request.frames.pose_camera,
                    "Camera the poses belong to (default auto: embedded ones as the camera file says, a file's: color)")
       ->transform(CLI::CheckedTransformer(cameras));
+  command->add_option("--trajectory", request.trajectory_path, "Write where the camera was in each frame, TUM format");
+  command->add_flag("--resume", request.is_resumed, "Go on with a build of the same map that was interrupted");
+  command->add_flag("!--no-level", request.is_levelled, "Do not turn the map so that z points up from the floor");
+  command->add_option("--ba", arguments->adjustment, "Bundle adjustment with measured depth or without, for comparison")
+      ->check(CLI::IsMember({"2d", "depth"}))->capture_default_str();
+  command->add_option("--tracking", arguments->tracking, "The same for tracking")
+      ->check(CLI::IsMember({"2d", "depth"}))->capture_default_str();
   command->add_flag("--json", arguments->is_json, "Print the summary as JSON");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -39,8 +39,7 @@ std::string segment_path(const std::string& map_path, std::size_t number) {
   return (path.parent_path() / (path.stem().string() + "." + std::to_string(number + 1) + path.extension().string())).string();
 }
 
-Status finish_map(const BuildRequest& request, const std::string& name, const std::string& path, MapBuilder* builder,
-                  BuildSummary* summary) {
+Status finish_map(const std::string& name, const std::string& path, MapBuilder* builder, BuildSummary* summary) {
   auto map = builder->finish(&summary->build);
   if (!map.is_ok()) return map.status();
   map->name = name;
@@ -48,7 +47,6 @@ Status finish_map(const BuildRequest& request, const std::string& name, const st
   summary->map_path = path;
   summary->pose_sigma_m = map->pose_sigma_m;
   summary->pose_sigma_rad = map->pose_sigma_rad;
-  (void)request;
   return Status::ok();
 }
 
@@ -95,7 +93,7 @@ Status build_from_poses(const BuildRequest& request, BuildSummary* summary) {
                                      summary->first_broken};
   }
   progress.say("choosing landmarks and keyframes, training words ...");
-  return finish_map(request, request.name.empty() ? folder_name(frames->folder) : request.name, request.map_path, &builder, summary);
+  return finish_map(request.name.empty() ? folder_name(frames->folder) : request.name, request.map_path, &builder, summary);
 }
 
 // --- SLAM finds the poses --------------------------------------------------------------------------------------------
@@ -120,7 +118,7 @@ Status map_segment(const BuildRequest& request, const WalkRequest& walk, const S
     progress.show(++done, std::to_string(builder.progress().num_landmarks_before) + " landmarks");
   }
   progress.say("choosing landmarks and keyframes, training words ...");
-  return finish_map(request, name, segment_path(request.map_path, number), &builder, summary);
+  return finish_map(name, segment_path(request.map_path, number), &builder, summary);
 }
 
 Status write_trajectory(const BuildRequest& request, const SlamResult& result, std::uint64_t num_frames) {
@@ -180,6 +178,7 @@ Status build_from_walk(const BuildRequest& request, BuildSummary* summary) {
   }
   if (const Status usable = check.verdict(result); !usable.is_ok()) return usable;
   summary->slam->counts = slam.counts();
+  summary->slam->num_resumed = end->num_resumed;
   summary->slam->fit = result.segments.front().fit;
   summary->slam->weak_spots = check.weak_spots();
   summary->slam->num_stamp_jumps = check.num_stamp_jumps();

@@ -23,7 +23,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct EvalArguments {
-  std::string estimate_path, reference_path, align = "none", frames, camera_path, map_path, png_path;
+  std::string estimate_path, reference_path, align = "none", align_by_path, align_reference_path, frames, camera_path, map_path, png_path;
   bool is_json = false;
 };
 
@@ -33,10 +33,10 @@ struct Reference {
   std::uint64_t num_frames = 0;
 };
 
-Result<Reference> read_reference_folder(const EvalArguments& arguments, const std::optional<Rigid3>& T_color_depth) {
-  auto sequence = read_sequence(arguments.reference_path);
+Result<Reference> read_reference_folder(const std::string& path, const std::string& frames, const std::optional<Rigid3>& T_color_depth) {
+  auto sequence = read_sequence(path);
   if (!sequence) return sequence.status();
-  auto selected = select_frames(arguments.frames, "", sequence->frames.size());
+  auto selected = select_frames(frames, "", sequence->frames.size());
   if (!selected) return selected.status();
   auto poses = read_embedded_poses(*sequence);
   if (!poses) return poses.status();
@@ -51,9 +51,10 @@ Result<Reference> read_reference_folder(const EvalArguments& arguments, const st
   return reference;
 }
 
-Result<Reference> read_reference(const EvalArguments& arguments, const EstimatedTrajectory& estimate) {
-  if (!std::filesystem::is_directory(arguments.reference_path)) {
-    auto poses = read_tum_trajectory(arguments.reference_path);
+Result<Reference> read_reference(const EvalArguments& arguments, const std::string& path, const std::string& frames,
+                                 const EstimatedTrajectory& estimate) {
+  if (!std::filesystem::is_directory(path)) {
+    auto poses = read_tum_trajectory(path);
     if (!poses) return poses.status();
     const std::uint64_t count = poses->size();
     return Reference{std::move(poses).value(), count};
@@ -64,10 +65,10 @@ Result<Reference> read_reference(const EvalArguments& arguments, const Estimated
     if (!camera) return camera.status();
     T_color_depth = camera->poses_are_of_depth_camera ? std::optional(camera->T_color_depth) : std::nullopt;
   }
-  return read_reference_folder(arguments, T_color_depth);
+  return read_reference_folder(path, frames, T_color_depth);
 }
 
-Json statistics_json(const ErrorStatistics& s) { return {{"median", s.median}, {"mean", s.mean}, {"p90", s.p90}, {"max", s.max}}; }
+Json statistics_json(const ErrorStatistics& s) { return {{"median", s.median}, {"mean", s.mean}, {"rmse", s.rmse}, {"p90", s.p90}, {"max", s.max}}; }
 
 Json errors_json(const TrajectoryErrors& errors, const EstimatedTrajectory& estimate) {
   Json within;
@@ -96,8 +97,8 @@ void print_errors(const TrajectoryErrors& errors, const EstimatedTrajectory& est
               static_cast<unsigned long long>(errors.num_localized),
               errors.num_frames == 0 ? 0.0 : percent(static_cast<double>(errors.num_localized) / static_cast<double>(errors.num_frames)),
               static_cast<unsigned long long>(errors.num_compared));
-  std::printf("              %10s %10s %10s %10s\n", "median", "mean", "p90", "max");
-  const auto row = [](const char* name, const ErrorStatistics& s) { std::printf("%-13s %10.4f %10.4f %10.4f %10.4f\n", name, s.median, s.mean, s.p90, s.max); };
+  std::printf("              %10s %10s %10s %10s %10s\n", "median", "mean", "rmse", "p90", "max");
+  const auto row = [](const char* name, const ErrorStatistics& s) { std::printf("%-13s %10.4f %10.4f %10.4f %10.4f %10.4f\n", name, s.median, s.mean, s.rmse, s.p90, s.max); };
   row("translation m", errors.translation_m);
   row("rotation deg", errors.rotation_deg);
   for (std::size_t i = 0; i < kErrorLimits.size(); ++i) std::printf("within %-12s %6.1f %% of all frames\n", kErrorLimits[i].name, percent(errors.share_within[i]));
@@ -133,18 +134,43 @@ Status draw(const EvalArguments& arguments, const EstimatedTrajectory& estimate,
   return write_top_view(view, arguments.png_path);
 }
 
+ReferencePose lookup(const Reference& reference) {
+  return [&reference](std::int64_t stamp_ns) { return pose_at(reference.poses, stamp_ns); };
+}
+
+/// The motion to apply to the estimate, by itself or by another trajectory in the same frame.
+Result<std::optional<Rigid3>> find_alignment(const EvalArguments& arguments, const EstimatedTrajectory& estimate, const Reference& reference) {
+  using Alignment = std::optional<Rigid3>;
+  if (arguments.align_by_path.empty()) {
+    if (arguments.align == "se3") return Alignment(align_by_positions(estimate, lookup(reference)));
+    if (arguments.align == "poses") return Alignment(align_by_poses(estimate, lookup(reference)));
+    return Alignment();
+  }
+  auto other = read_trajectory(arguments.align_by_path);
+  if (!other) return other.status();
+  const std::string& path = arguments.align_reference_path.empty() ? arguments.reference_path : arguments.align_reference_path;
+  auto other_reference = read_reference(arguments, path, "", *other);
+  if (!other_reference) return other_reference.status();
+  const auto num_common = std::count_if(other->poses.begin(), other->poses.end(), [&](const EstimatedPose& pose) {
+    return pose_at(other_reference->poses, pose.stamp_ns).has_value();
+  });
+  if (num_common < 3) return Status(ErrorCode::kInvalid, "--align-by " + arguments.align_by_path + ": has no poses at the times of " + path);
+  return Alignment(align_by_poses(*other, lookup(*other_reference)));
+}
+
 Status eval(const EvalArguments& arguments) {
   if (!arguments.png_path.empty()) {
     if (Status status = check_output_path("--png", arguments.png_path); !status) return status;
   }
   auto estimate = read_trajectory(arguments.estimate_path);
   if (!estimate) return estimate.status();
-  auto reference = read_reference(arguments, *estimate);
+  auto reference = read_reference(arguments, arguments.reference_path, arguments.frames, *estimate);
   if (!reference) return reference.status();
   const bool is_counted = estimate->num_frames.has_value() && arguments.frames.empty();
   const std::uint64_t num_frames = is_counted ? *estimate->num_frames : std::max<std::uint64_t>(reference->num_frames, estimate->poses.size());
-  const auto pose = [&](std::int64_t stamp_ns) { return pose_at(reference->poses, stamp_ns); };
-  const TrajectoryErrors errors = compare(*estimate, pose, num_frames, arguments.align == "se3");
+  const auto alignment = find_alignment(arguments, *estimate, *reference);
+  if (!alignment) return alignment.status();
+  const TrajectoryErrors errors = compare(*estimate, lookup(*reference), num_frames, alignment.value());
   if (errors.num_compared == 0 && errors.num_localized > 0) {
     return {ErrorCode::kInvalid, arguments.reference_path + ": has no pose at the times of " + arguments.estimate_path + ": is it of the same recording?"};
   }
@@ -163,8 +189,13 @@ void add_eval_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("eval", "Compare a trajectory with a reference");
   command->add_option("--estimate", arguments->estimate_path, "Trajectory in TUM format")->required();
   command->add_option("--reference", arguments->reference_path, "Trajectory in TUM format, or folder of a recording with poses")->required();
-  command->add_option("--align", arguments->align, "none: same frame; se3: take out the best rigid motion first")
-      ->check(CLI::IsMember({"none", "se3"}))->capture_default_str();
+  command->add_option("--align", arguments->align, "none: same frame; se3: take out the rigid motion that fits positions best (absolute trajectory error); poses: "
+                                                 "the one that fits positions and orientations")
+      ->check(CLI::IsMember({"none", "se3", "poses"}))->capture_default_str();
+  CLI::Option* align_by = command->add_option("--align-by", arguments->align_by_path,
+                                              "Take out the motion that fits another trajectory in the same map to its reference, e.g. the one "
+                                              "that the map build wrote");
+  command->add_option("--align-reference", arguments->align_reference_path, "Reference of --align-by (default: --reference)")->needs(align_by);
   command->add_option("--frames", arguments->frames, "With a reference folder: the frames that were tried, start:stop:step[,...]");
   command->add_option("--camera", arguments->camera_path, "Camera file that says whose poses the folder has (default: as noted in the estimate)");
   CLI::Option* png = command->add_option("--png", arguments->png_path, "Write a top view of map, reference and estimate");

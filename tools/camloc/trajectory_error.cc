@@ -34,18 +34,12 @@ ErrorStatistics statistics(std::vector<double> values) {
   if (values.empty()) return {};
   ErrorStatistics out;
   out.mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  for (const double value : values) out.rmse += value * value / static_cast<double>(values.size());
+  out.rmse = std::sqrt(out.rmse);
   out.median = quantile(values, 0.5);
   out.p90 = quantile(values, 0.9);
   out.max = values.back();
   return out;
-}
-
-Rigid3 rigid_alignment(const std::vector<Pair>& pairs) {
-  if (pairs.size() < 3) return {};
-  std::vector<PointPair> points;
-  points.reserve(pairs.size());
-  for (const Pair& pair : pairs) points.push_back({pair.reference.translation, pair.estimate.translation});
-  return align_rigid(points).T_a_b;
 }
 
 double nees(const Pair& pair) {
@@ -61,22 +55,44 @@ Matrix6d rotated(const Matrix6d& covariance, const Eigen::Quaterniond& rotation)
 
 }  // namespace
 
-TrajectoryErrors compare(const EstimatedTrajectory& estimate, const ReferencePose& reference, std::uint64_t num_frames, bool align_se3) {
+Rigid3 align_by_positions(const EstimatedTrajectory& estimate, const ReferencePose& reference) {
+  std::vector<PointPair> points;
+  for (const EstimatedPose& pose : estimate.poses) {
+    if (const auto truth = reference(pose.stamp_ns)) points.push_back({truth->translation, pose.T_map_camera.translation});
+  }
+  return points.size() < 3 ? Rigid3{} : align_rigid(points).T_a_b;
+}
+
+Rigid3 align_by_poses(const EstimatedTrajectory& estimate, const ReferencePose& reference) {
+  constexpr double kLeverM = 1.0;
+  std::vector<PointPair> points;
+  for (const EstimatedPose& pose : estimate.poses) {
+    const auto truth = reference(pose.stamp_ns);
+    if (!truth) continue;
+    points.push_back({truth->translation, pose.T_map_camera.translation});
+    for (int axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d lever = kLeverM * Eigen::Vector3d::Unit(axis);
+      points.push_back({*truth * lever, pose.T_map_camera * lever});
+    }
+  }
+  return points.empty() ? Rigid3{} : align_rigid(points).T_a_b;
+}
+
+TrajectoryErrors compare(const EstimatedTrajectory& estimate, const ReferencePose& reference, std::uint64_t num_frames,
+                         const std::optional<Rigid3>& T_reference_estimate) {
   TrajectoryErrors errors;
   errors.num_frames = num_frames;
   errors.num_localized = estimate.poses.size();
+  errors.T_reference_estimate = T_reference_estimate;
+  const Rigid3 T = T_reference_estimate.value_or(Rigid3{});
   std::vector<Pair> pairs;
   for (const EstimatedPose& pose : estimate.poses) {
-    if (const auto truth = reference(pose.stamp_ns)) pairs.push_back({*truth, pose.T_map_camera, pose.covariance});
+    const auto truth = reference(pose.stamp_ns);
+    if (!truth) continue;
+    Pair& pair = pairs.emplace_back(Pair{*truth, T * pose.T_map_camera, pose.covariance});
+    if (pair.covariance) pair.covariance = rotated(*pair.covariance, T.rotation);
   }
   errors.num_compared = pairs.size();
-  if (align_se3) {
-    errors.T_reference_estimate = rigid_alignment(pairs);
-    for (Pair& pair : pairs) {
-      pair.estimate = *errors.T_reference_estimate * pair.estimate;
-      if (pair.covariance) pair.covariance = rotated(*pair.covariance, errors.T_reference_estimate->rotation);
-    }
-  }
 
   std::vector<double> translations, rotations, all_nees;
   for (const Pair& pair : pairs) {

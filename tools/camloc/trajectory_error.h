@@ -17,7 +17,7 @@
 namespace camloc::tools {
 
 struct ErrorStatistics {
-  double median = 0, mean = 0, p90 = 0, max = 0;
+  double median = 0, mean = 0, rmse = 0, p90 = 0, max = 0;
 };
 
 /// "Within 5cm/5deg" and so on; the share is of all frames.
@@ -40,13 +40,21 @@ struct TrajectoryErrors {
   std::uint64_t num_with_covariance = 0;
   double nees_mean = 0, nees_median = 0;  ///< 6 degrees of freedom: 6 and 5.35 when honest
   double share_inside_95 = 0;             ///< NEES below 12.59
-  std::optional<Rigid3> T_reference_estimate;  ///< of the alignment, when one was asked for
+  std::optional<Rigid3> T_reference_estimate;  ///< of the alignment, when there was one
 };
 
 using ReferencePose = std::function<std::optional<Rigid3>(std::int64_t stamp_ns)>;
 
-/// `align_se3`: the rigid motion that brings the estimate closest to the reference is taken out first (Umeyama,
-/// "Least-squares estimation of transformation parameters between two point patterns", 1991; scale 1).
-[[nodiscard]] TrajectoryErrors compare(const EstimatedTrajectory& estimate, const ReferencePose& reference, std::uint64_t num_frames, bool align_se3);
+/// The rigid motion that brings the positions of the estimate closest to those of the reference (Umeyama, "Least-squares
+/// estimation of transformation parameters between two point patterns", 1991; scale 1): what the absolute trajectory error is
+/// taken after. Identity with fewer than three common poses.
+[[nodiscard]] Rigid3 align_by_positions(const EstimatedTrajectory& estimate, const ReferencePose& reference);
+/// The same with orientations, which count like positions on a lever of one metre: for bringing one trajectory into a frame by
+/// means of another, where a short walk leaves the turn open. Identity without a common pose.
+[[nodiscard]] Rigid3 align_by_poses(const EstimatedTrajectory& estimate, const ReferencePose& reference);
+
+/// `T_reference_estimate` is applied to the estimate first.
+[[nodiscard]] TrajectoryErrors compare(const EstimatedTrajectory& estimate, const ReferencePose& reference, std::uint64_t num_frames,
+                                       const std::optional<Rigid3>& T_reference_estimate = std::nullopt);
 
 }  // namespace camloc::tools
