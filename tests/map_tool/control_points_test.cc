@@ -135,6 +135,21 @@ TEST(PixelMeasurement, DepthAndRayOfAFlatWall) {
   EXPECT_EQ(measure_pixel(pixel, camera, lookup, depth.view()).status().code(), ErrorCode::kInvalid);
 }
 
+TEST(PixelMeasurement, OnlyOfTheFrameAtHand) {
+  const auto observations = parse_control_observations("A pixel 3 100 100\nA pixel 4 100 100\nB map 1 2 3\nC pixel 3 700 100\n", "seen.txt");
+  ASSERT_TRUE(observations.is_ok());
+  const RgbdCamera camera = test_camera();
+  FrameBuffer frame;
+  frame.sequence = 3;
+  frame.depth.resize(640, 480);
+  std::fill(frame.depth.pixels.begin(), frame.depth.pixels.end(), std::uint16_t{1500});
+  PixelMeasurements measurements;
+  measure_pixels(*observations, camera, DepthLookup(camera), frame.view(), &measurements);
+  ASSERT_EQ(measurements.size(), 2U);
+  EXPECT_NEAR(measurements.at(1)->depth_m, 1.5, 1e-6);
+  EXPECT_FALSE(measurements.at(4).is_ok());
+}
+
 // Against a Monte Carlo of pixel, depth and pose.
 TEST(PixelMeasurement, SigmaOfThePointIsHonest) {
   std::mt19937 rng(4);

@@ -90,7 +90,7 @@ Result<ResolvedObservations> resolve(const GeorefArguments& arguments, const Map
   ControlSources sources;
   sources.landmark = [&](std::uint32_t landmark) { return landmark_sighting(map, landmark); };
   sources.T_map_camera = [&](std::uint64_t frame) { return frames.at(frame).T_map_camera; };
-  sources.pixel = [&](const ControlObservation& pixel) { return frames.at(pixel.frame).measurement_of_line.at(pixel.line); };
+  sources.pixel = [&](const ControlObservation& pixel) { return frames.at(pixel.frame).measurements.at(pixel.line); };
   return resolve_observations(observations, camera, sources);
 }
 

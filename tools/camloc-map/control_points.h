@@ -17,6 +17,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -74,6 +75,14 @@ struct PixelMeasurement {
 /// there is no depth, or the pixel is at the edge of something.
 [[nodiscard]] Result<PixelMeasurement> measure_pixel(const ControlObservation& pixel, const RgbdCamera& camera,
                                                      const DepthLookup& lookup, ImageView<std::uint16_t> depth);
+
+/// By the line of the observation; an error says why there is none.
+using PixelMeasurements = std::map<int, Result<PixelMeasurement>>;
+
+/// measure_pixel() for every observation that is in this frame of a recording (Frame::sequence): a pass over a recording calls it
+/// frame by frame and resolves with the final poses.
+void measure_pixels(const std::vector<ControlObservation>& observations, const RgbdCamera& camera, const DepthLookup& lookup,
+                    const Frame& frame, PixelMeasurements* measurements);
 
 /// One sighting of a point in the map.
 struct PointSighting {

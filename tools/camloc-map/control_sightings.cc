@@ -101,6 +101,14 @@ Result<PixelMeasurement> measure_pixel(const ControlObservation& pixel, const Rg
   return PixelMeasurement{normalized, static_cast<double>(depth_m), pixel.sigma};
 }
 
+void measure_pixels(const std::vector<ControlObservation>& observations, const RgbdCamera& camera, const DepthLookup& lookup,
+                    const Frame& frame, PixelMeasurements* measurements) {
+  for (const ControlObservation& observation : observations) {
+    if (observation.kind != ObservationKind::kPixel || observation.frame != frame.sequence) continue;
+    measurements->insert_or_assign(observation.line, measure_pixel(observation, camera, lookup, frame.depth));
+  }
+}
+
 PointSighting to_map(const ControlObservation& pixel, const PixelMeasurement& measurement, const RgbdCamera& camera,
                      const PoseWithCovariance& T_map_camera) {
   const double z = measurement.depth_m;

@@ -38,14 +38,6 @@ Result<PoseWithCovariance> pose_of(const Localization& localization) {
   return {ErrorCode::kNotFound, std::string("the frame is not localized in the map: ") + to_string(localization.reason)};
 }
 
-void measure(const std::vector<ControlObservation>& observations, const RgbdCamera& camera, const DepthLookup& lookup, const Frame& frame,
-             LocalizedFrame* result) {
-  for (const ControlObservation& observation : observations) {
-    if (observation.kind != ObservationKind::kPixel || observation.frame != frame.sequence) continue;
-    result->measurement_of_line.emplace(observation.line, measure_pixel(observation, camera, lookup, frame.depth));
-  }
-}
-
 }  // namespace
 
 Result<Frames> localize_frames(const MapView& map, const RgbdCamera& camera, const std::string& sequence_url,
@@ -80,7 +72,7 @@ Result<Frames> localize_frames(const MapView& map, const RgbdCamera& camera, con
     const auto found = frames.find(buffer.sequence);
     if (found == frames.end()) continue;
     found->second.T_map_camera = pose_of(localization);
-    measure(observations, camera, lookup, buffer.view(), &found->second);
+    measure_pixels(observations, camera, lookup, buffer.view(), &found->second.measurements);
   }
   return Status(ErrorCode::kIo, "interrupted; nothing was written");
 }

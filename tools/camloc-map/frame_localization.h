@@ -19,7 +19,7 @@ namespace camloc::map_tool {
 /// What one frame had to say. Errors are reasons for people.
 struct LocalizedFrame {
   Result<PoseWithCovariance> T_map_camera = Status(ErrorCode::kNotFound, "the recording has no such frame");
-  std::map<int, Result<PixelMeasurement>> measurement_of_line;  ///< by the line of the observation
+  PixelMeasurements measurements;
 };
 
 /// Localizes the frames that `observations` have pixels in. A few frames before each are run through the localizer too, so
