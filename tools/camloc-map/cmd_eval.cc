@@ -186,9 +186,10 @@ Status check(const EvalArguments& arguments) {
   return Status::ok();
 }
 
-/// Bad arguments and unreadable formats are the user's to correct; the rest failed.
+/// What the user has to correct in arguments and files is 2; the rest failed.
 int exit_code_of(const Status& status) {
-  return status.code() == ErrorCode::kIo || status.code() == ErrorCode::kUnavailable ? 1 : 2;
+  const ErrorCode code = status.code();
+  return code == ErrorCode::kInvalid || code == ErrorCode::kCorrupt || code == ErrorCode::kUnsupported ? 2 : 1;
 }
 
 int run(const EvalArguments& arguments) {

@@ -6,7 +6,7 @@
 // cloud's, which works where the map holds only a part of the scan. The best places are improved by closest points.
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 #include "core/geometry/alignment.h"
 #include "tools/camloc-map/cell_correlation.h"
@@ -19,10 +19,11 @@ namespace {
 
 constexpr double kCellM = 0.25;            // surfaces count by area, not by how often they were scanned
 constexpr std::size_t kNumSamples = 800;
-constexpr std::size_t kMaxCells = 4000000; // of the grid in which the map is slid; larger sites get larger cells
-constexpr std::size_t kNumImproved = 60, kNumKept = 6;
+constexpr std::size_t kMaxCells = 300000;  // of the grid in which the map is slid; larger sites get larger cells
+constexpr std::size_t kNumImproved = 30, kNumKept = 6;
 constexpr double kTrim = 0.75;
-constexpr int kIterations = 30;
+constexpr double kFarM = 3;                // what is farther counts as this far
+constexpr int kIterations = 12;
 constexpr double kSamePlaceM = 0.5, kSamePlaceRad = 0.17;
 
 struct Candidate {
@@ -68,23 +69,22 @@ bool is_same_place(const Rigid3& a, const Rigid3& b, const Eigen::Vector3d& cent
   return (a * center_map - b * center_map).norm() < kSamePlaceM && rotation_distance_rad(a.rotation, b.rotation) < kSamePlaceRad;
 }
 
-/// The closest pairs, and their mean distance.
+/// The closest pairs, and the mean distance of the closest samples.
 double match(const std::vector<Eigen::Vector3d>& samples, const CloudIndex& cloud, const Rigid3& T_cloud_map, std::vector<PointPair>* pairs) {
-  pairs->clear();
+  std::vector<std::pair<double, PointPair>> found;
   for (const Eigen::Vector3d& p_map : samples) {
-    if (const auto neighbor = cloud.nearest(T_cloud_map * p_map, 1e6)) pairs->push_back({cloud.points_m()[neighbor->index].cast<double>(), p_map, neighbor->distance_m});
+    const auto neighbor = cloud.nearest(T_cloud_map * p_map, kFarM);
+    if (neighbor) found.push_back({neighbor->distance_m, {cloud.points_m()[neighbor->index].cast<double>(), p_map}});
   }
-  if (pairs->empty()) return std::numeric_limits<double>::infinity();
-  const auto num_kept = std::max<std::size_t>(1, static_cast<std::size_t>(kTrim * static_cast<double>(pairs->size())));
-  std::nth_element(pairs->begin(), pairs->begin() + static_cast<std::ptrdiff_t>(num_kept - 1), pairs->end(),
-                   [](const PointPair& a, const PointPair& b) { return a.sigma_m < b.sigma_m; });
-  pairs->resize(num_kept);
-  double sum = 0;
-  for (PointPair& pair : *pairs) {
-    sum += pair.sigma_m;
-    pair.sigma_m = 1;
+  const auto num_wanted = static_cast<std::size_t>(kTrim * static_cast<double>(samples.size())), num_kept = std::min(num_wanted, found.size());
+  std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(num_kept), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  double sum = kFarM * static_cast<double>(num_wanted - num_kept);
+  pairs->clear();
+  for (std::size_t i = 0; i < num_kept; ++i) {
+    sum += found[i].first;
+    pairs->push_back(found[i].second);
   }
-  return sum / static_cast<double>(num_kept);
+  return sum / static_cast<double>(std::max<std::size_t>(1, num_wanted));
 }
 
 /// Iterative closest points, point to point: slow at the end, but it comes from far.

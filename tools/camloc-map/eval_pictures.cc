@@ -7,13 +7,15 @@
 #include <cstdio>
 
 #include "tools/camloc-map/point_raster.h"
+#include "tools/camloc-map/wall_directions.h"
 
 namespace camloc::map_tool {
 namespace {
 
 constexpr Rgb kPaper{252, 252, 250}, kInk{40, 40, 46}, kGrid{222, 222, 218}, kBar{70, 120, 170}, kMean{200, 80, 30}, kMedian{20, 20, 24}, kP95{130, 60, 150};
 constexpr Rgb kNight{18, 19, 22}, kLight{228, 228, 232}, kCamera{255, 255, 255}, kOutside{215, 95, 175};
-constexpr int kWidth = 1400, kMinHeight = 360, kMaxHeight = 1400, kMargin = 50, kHeader = 75, kFooter = 30;
+constexpr int kWidth = 1400, kMinHeight = 360, kMaxHeight = 1400, kMargin = 50, kHeader = 75, kFooter = 45;
+constexpr double kNearCosine = 0.866;   // 30 degrees
 constexpr double kFullScaleM = 0.10;
 constexpr std::size_t kFirstRampEntry = 70;   // darker ones cannot be told from the background
 
@@ -23,11 +25,24 @@ std::string format_cm(const char* name, double metres) {
   return text;
 }
 
-Eigen::Vector3d up_of(const Evaluation& evaluation) {
+/// The cameras' mean up, corrected to the cloud's z axis or else to the walls: who holds a camera looks down a little.
+Eigen::Vector3d up_of(const Evaluation& evaluation, const PointCloud& cloud) {
   Eigen::Vector3d up = Eigen::Vector3d::Zero();
   for (const Rigid3& T : evaluation.T_cloud_keyframe) up -= T.rotation * Eigen::Vector3d::UnitY();
   const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
-  return up.norm() < 1e-3 || up.normalized().dot(z) > 0.866 ? z : up.normalized();
+  if (up.norm() < 1e-3 || up.normalized().dot(z) > kNearCosine) return z;
+  up.normalize();
+  CloudAccumulator cells({0.1, 1, 1});
+  for (const Eigen::Vector3f& p : cloud.points_m) cells.add(p.cast<double>());
+  const PointCloud coarse = cells.finish();
+  std::vector<Eigen::Vector3d> points;
+  for (const Eigen::Vector3f& p : coarse.points_m) points.push_back(p.cast<double>());
+  const Eigen::Matrix3d walls = wall_directions(points);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cosine = walls.col(axis).dot(up);
+    if (std::abs(cosine) > kNearCosine) return (cosine > 0 ? 1 : -1) * walls.col(axis);
+  }
+  return up;
 }
 
 /// The height that cuts ceilings off: a little above most cameras.
@@ -73,10 +88,25 @@ void add_landmarks(const Evaluation& evaluation, Viewpoint viewpoint, PointRaste
   raster->add_points(viewpoint, evaluation.landmarks_m, colors, 1.5);
 }
 
+/// Not one over the other: where cameras stand closer than their symbols are large, some are left out.
+void add_keyframes(const Evaluation& evaluation, const Viewpoint& viewpoint, PointRaster* raster) {
+  constexpr double kSpacingPx = 12;
+  std::vector<Eigen::Vector2d> drawn;
+  for (const Rigid3& T : evaluation.T_cloud_keyframe) {
+    const Eigen::Vector2d pixel = viewpoint.px_per_m * (viewpoint.T_view_world * T.translation).head<2>();
+    if (std::any_of(drawn.begin(), drawn.end(), [&](const Eigen::Vector2d& other) { return (other - pixel).norm() < kSpacingPx; })) continue;
+    drawn.push_back(pixel);
+    raster->add_camera(viewpoint, T, std::max(0.1, 12 / viewpoint.px_per_m), kCamera);
+  }
+}
+
 /// The view that fills the width, and the height that it needs.
 std::pair<Viewpoint, int> fit_picture(const Evaluation& evaluation, CloudView view, const Eigen::Vector3d& up) {
   std::vector<Eigen::Vector3d> shown = evaluation.landmarks_m;
-  shown.insert(shown.end(), evaluation.keyframes_m.begin(), evaluation.keyframes_m.end());
+  // The fit may leave a hundredth out; the keyframes, a tenth at least, must not be that.
+  for (std::size_t i = 0; i <= evaluation.landmarks_m.size() / (10 * evaluation.keyframes_m.size() + 1); ++i) {
+    shown.insert(shown.end(), evaluation.keyframes_m.begin(), evaluation.keyframes_m.end());
+  }
   const auto fit = view == CloudView::kTop ? fit_top_view : fit_side_view;
   Viewpoint viewpoint = fit(shown, up, kWidth, kMaxHeight, kMargin);
   std::vector<double> rows;
@@ -139,18 +169,19 @@ ColorImage draw_histogram(const CloudDistances& distances, const std::string& ti
 }
 
 ColorImage draw_cloud_view(const Evaluation& evaluation, const PointCloud& cloud, CloudView view, const std::string& title) {
-  const Eigen::Vector3d up = up_of(evaluation);
+  const Eigen::Vector3d up = up_of(evaluation, cloud);
   const auto [viewpoint, height] = fit_picture(evaluation, view, up);
   PointRaster raster(kWidth, height, kNight);
   add_cloud(evaluation, cloud, viewpoint, up, view == CloudView::kTop ? eye_level(evaluation, up) : 1e18, &raster);
   add_landmarks(evaluation, viewpoint, &raster);
-  for (const Rigid3& T : evaluation.T_cloud_keyframe) raster.add_camera(viewpoint, T, std::max(0.12, 9 / viewpoint.px_per_m), kCamera);
+  add_keyframes(evaluation, viewpoint, &raster);
   raster.add_rectangle(0, 0, kWidth, kHeader, kNight);
+  raster.add_rectangle(0, height - kFooter, kWidth, kFooter, kNight);
   raster.add_text(30, 34, title, 14, kLight);
   raster.add_text(30, 59, "grey: cloud   white: keyframes   pink: landmarks outside of the cloud", 11, kLight);
   raster.add_text(kWidth - 520, 28, "landmark to cloud", 11, kLight);
   raster.add_legend(kWidth - 350, 17, 320, "0 cm", "10 cm and more", value_ramp().subspan(kFirstRampEntry));
-  raster.add_scale_bar(viewpoint, 30, height - 25, kLight);
+  raster.add_scale_bar(viewpoint, 30, height - kFooter / 2, kLight);
   return raster.image();
 }
 

@@ -123,7 +123,7 @@ Result<Rigid3> search_start(const EvaluationInput& input, const MapPoints& point
     const Rigid3& T_cloud_map = result.value().T_cloud_map.rigid;
     refined.push_back({T_cloud_map, capped_mean_distance(some, *cloud, T_cloud_map, options.max_distance_m), start.is_identity});
   }
-  if (refined.empty()) return {ErrorCode::kInvalid, "no place was found where the map fits into the cloud; is it the same site? Control points (--points) would help"};
+  if (refined.empty()) return {ErrorCode::kNotFound, "no place was found where the map fits into the cloud; is it the same site? Control points (--points) would help"};
   // A map that fits in its own frame is meant to be there.
   const auto handicapped_m = [](const CoarseStart& start) { return start.score_m * (start.is_identity ? 0.9 : 1); };
   const CoarseStart best =
@@ -290,7 +290,7 @@ Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOp
     if (is_stopped("aligning ...")) return stopped;
     const auto refined = refine(points, T_cloud_map, options, result.start, &cloud);
     if (!refined.is_ok()) {
-      return refined.status().with_context("map and cloud do not overlap (start: " + std::string(describe(result.start)) + ")");
+      return {ErrorCode::kNotFound, "map and cloud do not overlap (start: " + std::string(describe(result.start)) + "): " + refined.status().message()};
     }
     result.registration = refined.value();
     T_cloud_map = refined.value().T_cloud_map.rigid;

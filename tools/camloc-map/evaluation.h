@@ -76,8 +76,8 @@ struct Evaluation {
 };
 
 /// `say` names the stage that begins and returns false to stop. Errors: kInvalid when the map has no landmarks with enough
-/// observations, a start was asked for that the input does not give, the cloud seems to be in millimetres, map and cloud do not overlap;
-/// kIo when stopped.
+/// observations, a start was asked for that the input does not give, the cloud seems to be in millimetres; kNotFound
+/// when map and cloud do not overlap; kIo when stopped.
 [[nodiscard]] Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOptions& options,
                                               const std::function<bool(const std::string&)>& say = {});
 
