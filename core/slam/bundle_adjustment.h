@@ -75,8 +75,18 @@ struct BundleResidual {
 using BundleCallback = std::function<bool(int iteration, double cost)>;
 
 /// Adjusts poses and landmarks in place. Fix at least one camera or give three priors, or the gauge is free (the damping
-/// keeps the solution near where it was). Landmarks with a single observation without depth are left alone. Memory is bounded by
-/// the problem and the reduced system; nothing is kept per pair of observations. The same problem gives the same bits.
+/// keeps the solution near where it was).
+///  - sigma(z) is taken at the measured depth. A sigma_px that is not positive and finite counts as 1.
+///  - A landmark with one observation and no prior moves no camera: with depth it ends where that observation puts it, without
+///    it is left alone.
+///  - An observation whose landmark is behind the camera (nearer than 5 cm), more than 45 degrees off, or not finite takes no
+///    part for as long as that is so, at the cost it would have at 45 degrees. Depths and priors that are not positive and
+///    finite are ignored.
+///  - The kernels are applied by iteratively reweighted least squares: with many gross outliers the last permille of the cost
+///    takes many iterations, so take outliers out by bundle_residuals() and adjust again.
+/// Besides the problem, memory is a second copy of poses and landmarks and the reduced system, whose blocks (288 bytes) are
+/// pairs of cameras with a common landmark and their fill-in; nothing is kept per observation. The same problem gives the same
+/// bits.
 BundleReport adjust_bundle(const BundleOptions& options, BundleProblem* problem, const BundleCallback& on_iteration = {});
 
 /// Residuals at the current state, one per observation.
