@@ -198,11 +198,11 @@ class RivalFinder {
   PnpRansac ransac_;
 };
 
-WeakSpot weak_spot_of(const KeyframeLocalizability& place, const LocalizabilityOptions& options) {
-  if (place.num_landmarks < options.min_landmarks) return WeakSpot::kFewLandmarks;
-  if (place.spread < options.min_spread) return WeakSpot::kPoorSpread;
-  if (!(place.position_sigma_m <= options.max_position_sigma_m)) return WeakSpot::kImprecise;
-  return WeakSpot::kNone;
+FixWeakness weakness_of(const KeyframeLocalizability& place, const LocalizabilityOptions& options) {
+  if (place.num_landmarks < options.min_landmarks) return FixWeakness::kFewLandmarks;
+  if (place.spread < options.min_spread) return FixWeakness::kPoorSpread;
+  if (!(place.position_sigma_m <= options.max_position_sigma_m)) return FixWeakness::kImprecise;
+  return FixWeakness::kNone;
 }
 
 bool is_look_alike(const KeyframeLocalizability& place, const LocalizabilityOptions& options) {
@@ -221,8 +221,8 @@ std::vector<KeyframeLocalizability> assess_localizability(const MapView& map, co
     KeyframeLocalizability& place = places[k];
     assess_precision(views[k], map.info(), options, &place);
     place.rival = rivals.find(k);
-    place.weak_spot = weak_spot_of(place, options);
-    if (place.weak_spot != WeakSpot::kNone) place.outlook = FixOutlook::kScanAgain;
+    place.weakness = weakness_of(place, options);
+    if (place.weakness != FixWeakness::kNone) place.outlook = FixOutlook::kScanAgain;
     else if (is_look_alike(place, options)) place.outlook = FixOutlook::kLookAlike;
   }
   return places;

@@ -22,7 +22,7 @@ enum class FixOutlook : std::uint8_t {
 };
 
 /// Why a place should be scanned again.
-enum class WeakSpot : std::uint8_t { kNone, kFewLandmarks, kPoorSpread, kImprecise };
+enum class FixWeakness : std::uint8_t { kNone, kFewLandmarks, kPoorSpread, kImprecise };
 
 /// The limits were set where single frames of another day stopped being fixed in a generated building of corridors and offices
 /// (887 frames, 1851 keyframes): 90 % of the frames were fixed where the keyframe with the nearest view has less than 40 rival
@@ -59,7 +59,7 @@ struct RivalPlace {
 
 struct KeyframeLocalizability {
   FixOutlook outlook = FixOutlook::kLikely;
-  WeakSpot weak_spot = WeakSpot::kNone; ///< set with kScanAgain
+  FixWeakness weakness = FixWeakness::kNone; ///< set with kScanAgain
   std::uint32_t num_landmarks = 0;      ///< of the keyframe that other frames saw, too
   double spread = 0;                    ///< share of the image's 8 x 6 cells that hold one
   double position_sigma_m = 0;          ///< expected, of the worst axis; infinite where the view does not fix the pose

@@ -115,7 +115,7 @@ TEST(LocalizabilityTest, ABareWallIsToBeScannedAgain) {
   const auto places = assess(map, {looking({2, -0.5, 1.4}, {0, 1, 0}), looking({10, -0.5, 1.4}, {0, 1, 0})});
   EXPECT_EQ(places[0].outlook, FixOutlook::kLikely);
   EXPECT_EQ(places[1].outlook, FixOutlook::kScanAgain);
-  EXPECT_EQ(places[1].weak_spot, WeakSpot::kFewLandmarks);
+  EXPECT_EQ(places[1].weakness, FixWeakness::kFewLandmarks);
   EXPECT_GT(places[1].position_sigma_m, 2 * places[0].position_sigma_m);
 }
 
@@ -126,7 +126,7 @@ TEST(LocalizabilityTest, LandmarksThatOneFrameSawDoNotCount) {
   for (std::size_t i = 0; i < map.landmarks.size(); ++i) map.landmarks[i].num_observations = i % 10 == 0 ? 2 : 1;
   const auto places = assess(map, {looking({2, -0.5, 1.4}, {0, 1, 0})});
   EXPECT_LT(places[0].num_landmarks, 30U);
-  EXPECT_EQ(places[0].weak_spot, WeakSpot::kFewLandmarks);
+  EXPECT_EQ(places[0].weakness, FixWeakness::kFewLandmarks);
 }
 
 TEST(LocalizabilityTest, OnePosterOnAWallSpreadsPoorly) {
@@ -137,7 +137,7 @@ TEST(LocalizabilityTest, OnePosterOnAWallSpreadsPoorly) {
     map.landmarks.push_back(room_landmark(p, Eigen::Vector3d(2, 0, 1.4) - p, &random));
   }
   const auto places = assess(map, {looking({2, -0.5, 1.4}, {0, 1, 0})});
-  EXPECT_EQ(places[0].weak_spot, WeakSpot::kPoorSpread);
+  EXPECT_EQ(places[0].weakness, FixWeakness::kPoorSpread);
 }
 
 TEST(LocalizabilityTest, WhatIsFarAndUncertainIsImprecise) {
@@ -150,7 +150,7 @@ TEST(LocalizabilityTest, WhatIsFarAndUncertainIsImprecise) {
   }
   const auto places = assess(map, {looking({0, 0, 1.4}, {0, 1, 0})});
   EXPECT_EQ(places[0].outlook, FixOutlook::kScanAgain);
-  EXPECT_EQ(places[0].weak_spot, WeakSpot::kImprecise);
+  EXPECT_EQ(places[0].weakness, FixWeakness::kImprecise);
 }
 
 TEST(LocalizabilityTest, TheSamePlaceMappedTwiceIsNoRival) {

@@ -66,7 +66,7 @@ MapPicture picture_of(const MapView& map, const std::vector<std::uint32_t>& weak
   picture.places.resize(map.keyframes().size());
   for (const std::uint32_t keyframe : weak) {
     picture.places[keyframe].outlook = outlook;
-    picture.places[keyframe].weak_spot = WeakSpot::kFewLandmarks;
+    picture.places[keyframe].weakness = FixWeakness::kFewLandmarks;
     picture.places[keyframe].rival = RivalPlace{0, 0.5, 100, 90};
     picture.places[keyframe].num_landmarks = 100;
   }
@@ -151,7 +151,7 @@ TEST_F(ViewTest, NeighboursAreOneWeakPlaceAndTheWorstComesFirst) {
   std::vector<KeyframeLocalizability> places(9);
   for (const std::uint32_t k : {0U, 1U, 8U}) {
     places[k].outlook = FixOutlook::kScanAgain;
-    places[k].weak_spot = WeakSpot::kFewLandmarks;
+    places[k].weakness = FixWeakness::kFewLandmarks;
     places[k].num_landmarks = 10 + k;
     places[k].position_sigma_m = k == 8 ? 0.5 : 0.1 + 0.01 * k;
   }

@@ -98,6 +98,7 @@ std::string format_table(const BuildSummary& s) {
   append(&text, "%-22s%llu without pose, %llu without depth, %llu broken\n", "frames skipped", count(s.num_without_pose),
          count(s.num_without_depth), count(s.num_broken));
   if (s.slam) append_slam(s, &text);
+  if (s.model_scale) append(&text, "%-22s%s\n", "scale of the model", describe_scale(*s.model_scale).c_str());
   append(&text, "%-22s%llu\n", "observations", count(b.num_observations));
   append(&text, "%-22s%u of %u\n", "landmarks kept", b.num_landmarks, b.num_landmarks_before);
   append(&text, "%-22s%u\n", "descriptors", b.num_descriptors);
@@ -127,6 +128,11 @@ std::string format_json(const BuildSummary& s) {
                     {"without_pose", s.num_without_pose}, {"without_depth", s.num_without_depth}, {"broken", s.num_broken}};
   json["is_partial"] = s.is_partial;
   if (s.slam) json["slam"] = slam_json(*s.slam);
+  if (s.model_scale) {
+    json["model_scale"] = {{"metres_per_unit", s.model_scale->metres_per_unit}, {"spread", s.model_scale->spread},
+                           {"image_spread", s.model_scale->image_spread},       {"pairs", s.model_scale->num_pairs},
+                           {"images", s.model_scale->num_images}};
+  }
   json["submaps"] = nlohmann::ordered_json::array();
   for (const SubmapSummary& submap : s.submaps)
     json["submaps"].push_back({{"map", submap.map_path}, {"keyframes", submap.num_keyframes}, {"views", submap.num_views}});

@@ -12,6 +12,7 @@
 #include "core/map/map_builder.h"
 #include "core/map/map_data.h"
 #include "core/slam/slam.h"
+#include "tools/camloc-map/colmap_scale.h"
 #include "tools/camloc-map/walk_check.h"
 
 namespace camloc::map_tool {
@@ -38,6 +39,7 @@ struct BuildSummary {
   std::string first_broken;  ///< what was wrong with the first broken frame
   bool is_partial = false;   ///< interrupted: a map of the first part
   std::optional<SlamSummary> slam;
+  std::optional<ModelScale> model_scale;  ///< of the COLMAP model that the poses are from
   std::vector<SubmapSummary> submaps;   ///< besides the map itself
   MapBuildReport build;
   double pose_sigma_m = 0, pose_sigma_rad = 0;

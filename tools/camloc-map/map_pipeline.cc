@@ -84,6 +84,7 @@ Status build_from_poses(const BuildRequest& request, BuildSummary* summary) {
   summary->num_recorded = frames->num_recorded;
   summary->num_selected = frames->num_selected;
   summary->num_without_pose = frames->num_without_pose;
+  summary->model_scale = frames->scale;
   MapBuilder builder(request.camera, request.map);
   ProgressLine progress(frames->T_map_camera_of_frame.size());
   if (const Status added = add_frames(frames.value(), &builder, summary, &progress); !added.is_ok()) return added;

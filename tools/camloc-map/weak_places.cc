@@ -101,11 +101,11 @@ std::string explain(const MapView& map, const KeyframeLocalizability& place) {
     return text_of("%u of %u landmarks also fit the place at (%.1f %.1f %.1f); put up something that tells them apart", place.rival->num_inliers,
                    place.num_landmarks, there.x(), there.y(), there.z());
   }
-  switch (place.weak_spot) {
-    case WeakSpot::kFewLandmarks: return text_of("only %u landmarks; scan slower, nearer, with more light", place.num_landmarks);
-    case WeakSpot::kPoorSpread: return text_of("landmarks in only %.0f %% of the image; scan from farther back or turned", 100 * place.spread);
-    case WeakSpot::kImprecise: return "expected sigma " + centimetres(place.position_sigma_m) + "; scan from nearer and from several sides";
-    case WeakSpot::kNone: break;
+  switch (place.weakness) {
+    case FixWeakness::kFewLandmarks: return text_of("only %u landmarks; scan slower, nearer, with more light", place.num_landmarks);
+    case FixWeakness::kPoorSpread: return text_of("landmarks in only %.0f %% of the image; scan from farther back or turned", 100 * place.spread);
+    case FixWeakness::kImprecise: return "expected sigma " + centimetres(place.position_sigma_m) + "; scan from nearer and from several sides";
+    case FixWeakness::kNone: break;
   }
   return "";
 }
