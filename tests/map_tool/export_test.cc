@@ -201,8 +201,17 @@ TEST_F(ExportTest, ANameOfTheMapCannotBreakAHeader) {
   EXPECT_EQ(read_ply(format_ply(map, {})).rows.size(), 360U);
 }
 
-TEST_F(ExportTest, UpIsTheFlatAxisOrTheSitesZ) {
+TEST_F(ExportTest, UpIsAcrossTheImageRowsOfAMapThatLiesAskew) {
+  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.6, Eigen::Vector3d(1, 0.3, 0.1).normalized()));
+  MapData askew = make_room();
+  for (MapLandmark& landmark : askew.landmarks) landmark.position_m = (turn * landmark.position_m.cast<double>()).cast<float>();
+  for (MapKeyframe& keyframe : askew.keyframes) keyframe.T_map_camera = Rigid3{turn, {0, 0, 0}} * keyframe.T_map_camera;
+  EXPECT_LT((up_axis(open(askew)) - turn * Eigen::Vector3d::UnitZ()).norm(), 1e-3);
+}
+
+TEST_F(ExportTest, UpIsTheFlatAxisWhereCamerasDoNotTurnAndTheSitesZWhereThereIsOne) {
   EXPECT_EQ(up_axis(open(make_room())), Eigen::Vector3d(0, 0, 1));
+  EXPECT_EQ(up_axis(open(make_room({.num_keyframes = 1}))), Eigen::Vector3d(0, 0, 1));
   MapData turned = make_room();
   turned.wcs.emplace();
   turned.wcs->T_wcs_map.rotation = Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX());

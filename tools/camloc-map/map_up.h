@@ -11,9 +11,10 @@
 
 namespace camloc::map_tool {
 
-/// Unit vector in `map`. The z axis of the site where the map has a datum; else the axis of `map` along which landmarks (1st to
-/// 99th percentile) and keyframes extend least, which is what `camloc localize` draws along, too, pointing to the side to which the
-/// keyframes' image tops point on average.
+/// Unit vector in `map`, pointing to the side to which the keyframes' image tops point on average. The z axis of the site where the map
+/// has a datum; else what the keyframes' horizontal axes are perpendicular to (Snavely, Seitz, Szeliski, "Photo tourism", 2006),
+/// or an axis of `map` within 5 degrees of that; where the cameras turned too little or rolled, the axis of `map` along which
+/// landmarks (1st to 99th percentile) and keyframes extend least, which is what `camloc localize` draws along.
 [[nodiscard]] Eigen::Vector3d up_axis(const MapView& map);
 
 /// All landmarks of a map, metres in `map`.
