@@ -69,7 +69,8 @@ TEST(Distances, CountCoverageWhereTheMapIs) {
   CloudIndex cloud(cloud_m);
   // The left half of the floor densely, of the right half only a strip far away.
   std::vector<Eigen::Vector3d> landmarks;
-  for (double x = 0; x < 5; x += 0.1) for (double y = 0; y < 10; y += 0.1) landmarks.emplace_back(x, y, 0);
+  for (double x = 0; x < 5; x += 0.1)
+    for (double y = 0; y < 10; y += 0.1) landmarks.emplace_back(x, y, 0);
   for (double y = 0; y < 10; y += 0.02) landmarks.emplace_back(10, y, 0);
   CloudDistances d = measure_distances(landmarks, {}, &cloud, {});
   EXPECT_NEAR(static_cast<double>(d.num_cells), 1600, 90);
@@ -86,9 +87,10 @@ TEST(Distances, CountCoverageWhereTheMapIs) {
 TEST(Distances, ShowACollapsedMapByItsVolumeAndCoverage) {
   const ScannedFlat flat(1);
   CloudIndex cloud(flat.cloud_m);
-  std::vector<Eigen::Vector3d> collapsed;   // all on one corner of the room: each landmark is on the cloud
+  std::vector<Eigen::Vector3d> collapsed;  // all on one corner of the room: each landmark is on the cloud
   for (const auto& p : flat.landmarks_m) collapsed.push_back(0.001 * p);
-  const CloudDistances good = measure_distances(flat.landmarks_m, {}, &cloud, {}), bad = measure_distances(collapsed, {}, &cloud, {});
+  const CloudDistances good = measure_distances(flat.landmarks_m, {}, &cloud, {}),
+                       bad = measure_distances(collapsed, {}, &cloud, {});
   EXPECT_LT(bad.point.mean_m, 0.03);
   EXPECT_LT(bad.volume_ratio(), 1e-4);
   EXPECT_NEAR(good.volume_ratio(), 1, 0.1);

@@ -40,7 +40,8 @@ void expect_points(const Result<PointCloud>& cloud, std::vector<Eigen::Vector3d>
   ASSERT_EQ(cloud.value().points_m.size(), points.size());
   for (const Eigen::Vector3d& expected : points) {
     double nearest = 1e9;
-    for (const Eigen::Vector3f& p : cloud.value().points_m) nearest = std::min(nearest, (cloud.value().origin_m + p.cast<double>() - expected).norm());
+    for (const Eigen::Vector3f& p : cloud.value().points_m)
+      nearest = std::min(nearest, (cloud.value().origin_m + p.cast<double>() - expected).norm());
     EXPECT_LT(nearest, tolerance_m) << expected.transpose();
   }
 }
@@ -53,9 +54,12 @@ void expect_error(const Result<PointCloud>& cloud, ErrorCode code, const std::st
 }
 
 std::string binary_ply(bool is_big_endian, std::uint64_t count = 3) {
-  std::string bytes = std::string("ply\nformat ") + (is_big_endian ? "binary_big_endian" : "binary_little_endian") +
-                      " 1.0\ncomment made by hand\nelement camera 1\nproperty list uchar int ids\nproperty float f\nelement vertex " + std::to_string(count) +
-                      "\nproperty uchar red\nproperty double x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string bytes =
+      std::string("ply\nformat ") + (is_big_endian ? "binary_big_endian" : "binary_little_endian") +
+      " 1.0\ncomment made by hand\nelement camera 1\nproperty list uchar int ids\nproperty float f\nelement vertex " +
+      std::to_string(count) +
+      "\nproperty uchar red\nproperty double x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int "
+      "vertex_indices\nend_header\n";
   put<std::uint8_t>(&bytes, 2);
   put<std::int32_t>(&bytes, 7, is_big_endian);
   put<std::int32_t>(&bytes, 8, is_big_endian);
@@ -71,8 +75,10 @@ std::string binary_ply(bool is_big_endian, std::uint64_t count = 3) {
   return bytes;
 }
 
-const char* const kAsciiPly = "ply\r\nformat ascii 1.0\r\nelement vertex 3\r\nproperty float z\r\nproperty list uchar int tags\r\nproperty float x\r\nproperty float y\r\n"
-                              "end_header\r\n0.5 2 7 8 1.5 -2.25\r\n8 0 2 4\r\n1 1 9 -3.125 0\r\n";
+const char* const kAsciiPly =
+    "ply\r\nformat ascii 1.0\r\nelement vertex 3\r\nproperty float z\r\nproperty list uchar int tags\r\nproperty float "
+    "x\r\nproperty float y\r\n"
+    "end_header\r\n0.5 2 7 8 1.5 -2.25\r\n8 0 2 4\r\n1 1 9 -3.125 0\r\n";
 
 TEST(CloudFile, ReadsPly) {
   expect_points(read(binary_ply(false), "a.ply"), kPoints);
@@ -81,7 +87,9 @@ TEST(CloudFile, ReadsPly) {
 }
 
 TEST(CloudFile, ReadsPlyWithListsInItsVertices) {
-  std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty list uchar short tags\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+  std::string bytes =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty list uchar short tags\nproperty float x\nproperty float "
+      "y\nproperty float z\nend_header\n";
   for (int i = 0; i < 2; ++i) {
     put<std::uint8_t>(&bytes, static_cast<std::uint8_t>(3 * i));
     for (int k = 0; k < 3 * i; ++k) put<std::int16_t>(&bytes, 5);
@@ -95,7 +103,8 @@ TEST(CloudFile, RefusesBadPly) {
   expect_error(read(good.substr(0, good.size() - 20), "a.ply"), ErrorCode::kCorrupt, "truncated");
   expect_error(read(binary_ply(false, 1000000), "a.ply"), ErrorCode::kCorrupt, "promises 1000000");
   expect_error(read(binary_ply(false, std::uint64_t{1} << 62), "a.ply"), ErrorCode::kCorrupt, "do not fit");
-  expect_error(read("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n1 2\n", "a.ply"), ErrorCode::kCorrupt, "x, y and z");
+  expect_error(read("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n1 2\n", "a.ply"),
+               ErrorCode::kCorrupt, "x, y and z");
   expect_error(read("ply\nformat ascii 1.0\nelement vertex -4\nend_header\n", "a.ply"), ErrorCode::kInvalid, "a.ply:3");
   expect_error(read("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x", "a.ply"), ErrorCode::kCorrupt, "no end");
   std::string ascii = kAsciiPly;
@@ -104,8 +113,10 @@ TEST(CloudFile, RefusesBadPly) {
 }
 
 std::string pcd(const std::string& data, const std::string& payload, int points = 3) {
-  return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS rgb x y z\nSIZE 1 4 8 4\nTYPE U F F F\nCOUNT 3 1 1 1\nWIDTH " + std::to_string(points) +
-         "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(points) + "\nDATA " + data + "\n" + payload;
+  return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS rgb x y z\nSIZE 1 4 8 4\nTYPE U F F F\nCOUNT 3 1 1 "
+         "1\nWIDTH " +
+         std::to_string(points) + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(points) + "\nDATA " + data +
+         "\n" + payload;
 }
 
 std::string pcd_records() {
@@ -173,7 +184,8 @@ std::string las(int minor, int format, std::uint16_t record_bytes, std::uint64_t
   }
   for (const Eigen::Vector3d& p : kPoints) {
     std::string record(record_bytes, '\0');
-    for (int axis = 0; axis < 3; ++axis) put_at(&record, static_cast<std::size_t>(4 * axis), static_cast<std::int32_t>(std::lround(1000 * p[axis])));
+    for (int axis = 0; axis < 3; ++axis)
+      put_at(&record, static_cast<std::size_t>(4 * axis), static_cast<std::int32_t>(std::lround(1000 * p[axis])));
     bytes += record;
   }
   return bytes;
@@ -293,7 +305,8 @@ TEST(CloudAccumulator, IsNotMisledByAStrayFirstPoint) {
   EXPECT_LT((bounds[1] - bounds[0]).norm(), 210);
   double worst = 0;
   for (const Eigen::Vector3f& p : cloud.points_m) {
-    if (cloud.origin_m.x() + static_cast<double>(p.x()) > 1000) worst = std::max(worst, std::abs(cloud.origin_m.y() + static_cast<double>(p.y()) - 5400000.123));
+    if (cloud.origin_m.x() + static_cast<double>(p.x()) > 1000)
+      worst = std::max(worst, std::abs(cloud.origin_m.y() + static_cast<double>(p.y()) - 5400000.123));
   }
   EXPECT_LT(worst, 1e-5);
 }

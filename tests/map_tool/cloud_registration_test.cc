@@ -159,7 +159,8 @@ TEST(CellGridTest, FindsWhereAPieceBelongs) {
   Random random(1);
   std::vector<Eigen::Vector3d> points, piece;
   for (int i = 0; i < 400; ++i) points.emplace_back(random.uniform(-10, 10), random.uniform(-8, 8), random.uniform(0, 3));
-  for (const auto& p : points) if (p.x() > 2) piece.push_back(p - Eigen::Vector3d(7, -20, 100));
+  for (const auto& p : points)
+    if (p.x() > 2) piece.push_back(p - Eigen::Vector3d(7, -20, 100));
   const CellGrid grid(points, 0.25, 1000000);
   const auto places = grid.best_places(piece, 4);
   ASSERT_EQ(places.size(), 4U);

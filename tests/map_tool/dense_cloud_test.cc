@@ -64,7 +64,7 @@ TEST(DenseCloud, PutsDepthPixelsWhereTheSurfaceIs) {
 TEST(DenseCloud, LeavesOutWhatIsFarAndTheEdges) {
   const RgbdCamera camera = small_camera();
   DenseCloudOptions options;
-  options.max_depth_m = 1.5;   // the wall is behind
+  options.max_depth_m = 1.5;  // the wall is behind
   CloudAccumulator accumulator({0.01, 1, 1});
   const auto depth = see(camera, {});
   add_depth_image(camera, depth.view(), {}, options, &accumulator);
@@ -74,7 +74,7 @@ TEST(DenseCloud, LeavesOutWhatIsFarAndTheEdges) {
     low = std::min(low, static_cast<float>(cloud.origin_m.x()) + p.x());
     high = std::max(high, static_cast<float>(cloud.origin_m.x()) + p.x());
   }
-  EXPECT_GT(low, 0.1F + 0.5F / 145);   // not the outermost pixels of the post
+  EXPECT_GT(low, 0.1F + 0.5F / 145);  // not the outermost pixels of the post
   EXPECT_LT(high, 0.3F - 0.5F / 145);
   EXPECT_GT(high - low, 0.15F);
 }
@@ -87,13 +87,15 @@ TEST(DenseCloud, FusesARecordingWhosePosesAreOfTheDepthCamera) {
     const Rigid3 T_world_depth{exp_so3({0.0, 0.05 * i, 0.0}), {0.1 * i, 0, 0}};
     char name[64];
     std::snprintf(name, sizeof name, "/frame-%06d", i);
-    ASSERT_TRUE(write_depth_png(folder.path() + name + ".depth.png", see(camera, T_world_depth * camera.T_color_depth.inverse())).is_ok());
+    ASSERT_TRUE(write_depth_png(folder.path() + name + ".depth.png", see(camera, T_world_depth * camera.T_color_depth.inverse()))
+                    .is_ok());
     Image<std::uint8_t> gray;
     gray.resize(160, 120);
     ASSERT_TRUE(write_png(folder.path() + name + ".color.png", gray).is_ok());
     const Eigen::Matrix4d m = T_world_depth.matrix();
     std::string text;
-    for (int row = 0; row < 4; ++row) for (int column = 0; column < 4; ++column) text += std::to_string(m(row, column)) + (column == 3 ? "\n" : " ");
+    for (int row = 0; row < 4; ++row)
+      for (int column = 0; column < 4; ++column) text += std::to_string(m(row, column)) + (column == 3 ? "\n" : " ");
     ASSERT_FALSE(folder.write(std::string(name + 1) + ".pose.txt", text).empty());
   }
   PosedFramesRequest request;
@@ -103,7 +105,8 @@ TEST(DenseCloud, FusesARecordingWhosePosesAreOfTheDepthCamera) {
   DenseCloudOptions options;
   options.min_points = 1;
   std::uint64_t num_calls = 0;
-  const auto cloud = fuse_dense_cloud(frames.value(), camera, options, [&](std::uint64_t, std::uint64_t total) { return ++num_calls, total == 4; });
+  const auto cloud = fuse_dense_cloud(frames.value(), camera, options,
+                                      [&](std::uint64_t, std::uint64_t total) { return ++num_calls, total == 4; });
   ASSERT_TRUE(cloud.is_ok()) << cloud.status().message();
   EXPECT_EQ(num_calls, 4U);
   EXPECT_GT(cloud.value().points_m.size(), 3000U);

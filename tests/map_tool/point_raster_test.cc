@@ -39,7 +39,8 @@ std::vector<Eigen::Vector3d> room(double yaw_rad, const Eigen::Vector3d& center)
   std::uniform_real_distribution<double> unit(-0.5, 0.5);
   const Eigen::AngleAxisd turn(yaw_rad, Eigen::Vector3d::UnitZ());
   std::vector<Eigen::Vector3d> points;
-  for (int i = 0; i < 5000; ++i) points.push_back(center + turn * Eigen::Vector3d(10 * unit(random), 4 * unit(random), 2 * unit(random)));
+  for (int i = 0; i < 5000; ++i)
+    points.push_back(center + turn * Eigen::Vector3d(10 * unit(random), 4 * unit(random), 2 * unit(random)));
   return points;
 }
 
@@ -157,7 +158,8 @@ TEST_P(FitView, TopViewFillsThePictureAlongTheLongSide) {
   EXPECT_NEAR(middle.y(), 299.5, 10);
   EXPECT_LT(std::abs((project(view, center + along) - middle).y()), 0.07 * view.px_per_m);
   // From above and not in a mirror: counter-clockwise in the world is counter-clockwise on paper.
-  const Eigen::Vector2d x = project(view, center + Eigen::Vector3d::UnitX()) - middle, y = project(view, center + Eigen::Vector3d::UnitY()) - middle;
+  const Eigen::Vector2d x = project(view, center + Eigen::Vector3d::UnitX()) - middle,
+                        y = project(view, center + Eigen::Vector3d::UnitY()) - middle;
   EXPECT_LT(x.x() * y.y() - x.y() * y.x(), 0);
   EXPECT_LT((view.T_view_world * (center + Eigen::Vector3d::UnitZ())).z(), (view.T_view_world * center).z());
 }

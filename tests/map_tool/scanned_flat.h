@@ -16,7 +16,7 @@ using testing::Random;
 
 struct ScannedFlat {
   std::vector<Eigen::Vector3f> cloud_m;
-  std::vector<Eigen::Vector3d> landmarks_m;   ///< exactly on surfaces, in the frame of the cloud
+  std::vector<Eigen::Vector3d> landmarks_m;  ///< exactly on surfaces, in the frame of the cloud
 
   /// Rooms of 8 x 5 x 2.6 m and 3 x 4 x 2.6 m with tables and cupboards: no way to lay it onto itself but one.
   explicit ScannedFlat(int seed) {
@@ -41,13 +41,14 @@ struct ScannedFlat {
     }
   }
 
-  void add_sample(const Eigen::Vector3d& low, const Eigen::Vector3d& size, int axis, double side, double a, double b, Random* random) {
+  void add_sample(const Eigen::Vector3d& low, const Eigen::Vector3d& size, int axis, double side, double a, double b,
+                  Random* random) {
     Eigen::Vector3d p = low;
     p[axis] += side * size[axis];
     p[(axis + 1) % 3] += a;
     p[(axis + 2) % 3] += b;
     const Eigen::Vector3d noise(random->uniform(-1, 1), random->uniform(-1, 1), random->uniform(-1, 1));
-    cloud_m.push_back((p + 0.0035 * noise).cast<float>());   // 2 mm standard deviation
+    cloud_m.push_back((p + 0.0035 * noise).cast<float>());  // 2 mm standard deviation
     if (random->below(40) != 0) return;
     Eigen::Vector3d landmark = p;
     landmark[(axis + 1) % 3] += random->uniform(-0.015, 0.015);

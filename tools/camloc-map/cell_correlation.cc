@@ -8,7 +8,7 @@
 namespace camloc::map_tool {
 namespace {
 
-constexpr int kBorder = 1;   // cells beside the outermost ones
+constexpr int kBorder = 1;  // cells beside the outermost ones
 
 struct Scored {
   std::uint16_t score;
@@ -26,7 +26,9 @@ CellGrid::CellGrid(const std::vector<Eigen::Vector3d>& points_m, double cell_m, 
   for (int axis = 0; axis < 3; ++axis) size_[static_cast<std::size_t>(axis)] = static_cast<int>(cells_at(cell_m_)[axis]);
   low_m_.array() -= kBorder * cell_m_;
   const auto at = [&](int x, int y, int z) -> std::uint8_t& {
-    return cells_[(static_cast<std::size_t>(z) * static_cast<std::size_t>(size_[1]) + static_cast<std::size_t>(y)) * static_cast<std::size_t>(size_[0]) + static_cast<std::size_t>(x)];
+    return cells_[(static_cast<std::size_t>(z) * static_cast<std::size_t>(size_[1]) + static_cast<std::size_t>(y)) *
+                      static_cast<std::size_t>(size_[0]) +
+                  static_cast<std::size_t>(x)];
   };
   cells_.assign(static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) * static_cast<std::size_t>(size_[2]), 0);
   for (const Eigen::Vector3d& p : points_m) {
@@ -42,7 +44,8 @@ CellGrid::CellGrid(const std::vector<Eigen::Vector3d>& points_m, double cell_m, 
   }
 }
 
-void CellGrid::score_row(const std::vector<std::array<int, 3>>& points, int ty, int tz, int first_x, std::vector<std::uint16_t>* scores) const {
+void CellGrid::score_row(const std::vector<std::array<int, 3>>& points, int ty, int tz, int first_x,
+                         std::vector<std::uint16_t>* scores) const {
   std::fill(scores->begin(), scores->end(), std::uint16_t{0});
   const int num_x = static_cast<int>(scores->size());
   for (const auto& point : points) {
@@ -57,7 +60,7 @@ void CellGrid::score_row(const std::vector<std::array<int, 3>>& points, int ty, 
 }
 
 std::vector<CellGrid::Place> CellGrid::best_places(const std::vector<Eigen::Vector3d>& points_m, std::size_t max_places) const {
-  if (points_m.empty() || points_m.size() > 30000) return {};   // two a point fit 16 bits
+  if (points_m.empty() || points_m.size() > 30000) return {};  // two a point fit 16 bits
   Eigen::Vector3d low = points_m.front(), high = low;
   for (const Eigen::Vector3d& p : points_m) low = low.cwiseMin(p), high = high.cwiseMax(p);
   std::vector<std::array<int, 3>> points;
@@ -68,13 +71,14 @@ std::vector<CellGrid::Place> CellGrid::best_places(const std::vector<Eigen::Vect
     for (std::size_t axis = 0; axis < 3; ++axis) extent[axis] = std::max(extent[axis], points.back()[axis] + 1);
   }
   std::array<int, 3> first{}, last{};
-  for (std::size_t axis = 0; axis < 3; ++axis) first[axis] = -extent[axis] / 2, last[axis] = size_[axis] - extent[axis] + extent[axis] / 2;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    first[axis] = -extent[axis] / 2, last[axis] = size_[axis] - extent[axis] + extent[axis] / 2;
   std::vector<std::uint16_t> scores(static_cast<std::size_t>(std::max(0, last[0] - first[0] + 1)));
   std::vector<Scored> best;
   for (int tz = first[2]; tz <= last[2]; ++tz) {
     for (int ty = first[1]; ty <= last[1]; ++ty) {
       score_row(points, ty, tz, first[0], &scores);
-      const auto top = std::max_element(scores.begin(), scores.end());   // one a row is enough: neighbouring rows have the others
+      const auto top = std::max_element(scores.begin(), scores.end());  // one a row is enough: neighbouring rows have the others
       if (top != scores.end()) best.push_back({*top, {first[0] + static_cast<int>(top - scores.begin()), ty, tz}});
     }
   }
@@ -83,12 +87,14 @@ std::vector<CellGrid::Place> CellGrid::best_places(const std::vector<Eigen::Vect
   std::vector<std::array<int, 3>> taken;
   for (const Scored& scored : best) {
     const auto is_near = [&](const std::array<int, 3>& other) {
-      return std::abs(other[0] - scored.cell[0]) < 3 && std::abs(other[1] - scored.cell[1]) < 3 && std::abs(other[2] - scored.cell[2]) < 3;
+      return std::abs(other[0] - scored.cell[0]) < 3 && std::abs(other[1] - scored.cell[1]) < 3 &&
+             std::abs(other[2] - scored.cell[2]) < 3;
     };
     if (std::any_of(taken.begin(), taken.end(), is_near)) continue;
     taken.push_back(scored.cell);
     const Eigen::Vector3d cell(scored.cell[0], scored.cell[1], scored.cell[2]);
-    places.push_back({low_m_ + cell_m_ * cell - low, static_cast<double>(scored.score) / (2.0 * static_cast<double>(points.size()))});
+    places.push_back(
+        {low_m_ + cell_m_ * cell - low, static_cast<double>(scored.score) / (2.0 * static_cast<double>(points.size()))});
     if (places.size() >= max_places) break;
   }
   return places;

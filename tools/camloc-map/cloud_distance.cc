@@ -41,7 +41,8 @@ std::vector<Eigen::Vector3f> to_float(std::span<const Eigen::Vector3d> points) {
   return result;
 }
 
-void measure_landmarks(std::span<const Eigen::Vector3d> landmarks_m, CloudIndex* cloud, const DistanceOptions& options, CloudDistances* result) {
+void measure_landmarks(std::span<const Eigen::Vector3d> landmarks_m, CloudIndex* cloud, const DistanceOptions& options,
+                       CloudDistances* result) {
   std::vector<float> near_m, plane_m;
   for (const Eigen::Vector3d& p : landmarks_m) {
     const auto neighbor = cloud->nearest(p, std::numeric_limits<double>::max());
@@ -62,8 +63,8 @@ void measure_landmarks(std::span<const Eigen::Vector3d> landmarks_m, CloudIndex*
   result->all = statistics_of(result->point_m);
 }
 
-void measure_coverage(std::span<const Eigen::Vector3d> landmarks_m, std::span<const Eigen::Vector3d> keyframes_m, const CloudIndex& cloud,
-                      const Box& map_box, const DistanceOptions& options, CloudDistances* result) {
+void measure_coverage(std::span<const Eigen::Vector3d> landmarks_m, std::span<const Eigen::Vector3d> keyframes_m,
+                      const CloudIndex& cloud, const Box& map_box, const DistanceOptions& options, CloudDistances* result) {
   CloudAccumulator accumulator({options.cell_m, 1, 1});
   for (const Eigen::Vector3f& p : cloud.points_m()) accumulator.add(p.cast<double>());
   const PointCloud cells = accumulator.finish();
@@ -79,8 +80,8 @@ void measure_coverage(std::span<const Eigen::Vector3d> landmarks_m, std::span<co
   }
   result->cells = statistics_of(distances_m);
   result->num_cells = distances_m.size();
-  result->num_covered =
-      static_cast<std::uint64_t>(std::count_if(distances_m.begin(), distances_m.end(), [&](float d) { return static_cast<double>(d) <= options.covered_m; }));
+  result->num_covered = static_cast<std::uint64_t>(std::count_if(
+      distances_m.begin(), distances_m.end(), [&](float d) { return static_cast<double>(d) <= options.covered_m; }));
 }
 
 }  // namespace
@@ -100,7 +101,9 @@ DistanceStatistics statistics_of(std::span<const float> values_m) {
     num_5cm += d <= 0.05;
   }
   const double count = static_cast<double>(sorted.size());
-  const auto percentile = [&](double share) { return static_cast<double>(sorted[static_cast<std::size_t>(share * (count - 1) + 0.5)]); };
+  const auto percentile = [&](double share) {
+    return static_cast<double>(sorted[static_cast<std::size_t>(share * (count - 1) + 0.5)]);
+  };
   result.mean_m = sum / count;
   result.rms_m = std::sqrt(sum_squares / count);
   result.median_m = percentile(0.5);
@@ -116,8 +119,8 @@ double CloudDistances::volume_ratio() const {
   return map_extent_m.cwiseMax(kMinSideM).prod() / cloud_extent_m.cwiseMax(kMinSideM).prod();
 }
 
-CloudDistances measure_distances(std::span<const Eigen::Vector3d> landmarks_m, std::span<const Eigen::Vector3d> keyframes_m, CloudIndex* cloud,
-                                 const DistanceOptions& options) {
+CloudDistances measure_distances(std::span<const Eigen::Vector3d> landmarks_m, std::span<const Eigen::Vector3d> keyframes_m,
+                                 CloudIndex* cloud, const DistanceOptions& options) {
   CloudDistances result;
   measure_landmarks(landmarks_m, cloud, options, &result);
   const Box map_box = box_of(landmarks_m), cloud_box = box_of(cloud->points_m());

@@ -24,12 +24,14 @@ constexpr const char* kKnownKinds = "PLY, PCD, LAS and text tables (XYZ, PTS, CS
 
 std::string extension_of(const std::string& name) {
   std::string extension = std::filesystem::path(name).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
 }
 
 bool is_text(std::string_view bytes) {
-  return std::all_of(bytes.begin(), bytes.end(), [](char c) { return (c >= ' ' && c != '\x7f') || c == '\t' || c == '\r' || c == '\n'; });
+  return std::all_of(bytes.begin(), bytes.end(),
+                     [](char c) { return (c >= ' ' && c != '\x7f') || c == '\t' || c == '\r' || c == '\n'; });
 }
 
 Result<Reader> choose_reader(CloudInput* input) {
@@ -38,11 +40,13 @@ Result<Reader> choose_reader(CloudInput* input) {
   const std::string extension = extension_of(input->name());
   if (start.empty()) return input->error(ErrorCode::kInvalid, "is empty");
   if (start.starts_with("ASTM-E57")) {
-    return input->error(ErrorCode::kUnsupported,
-                        "E57 is not read; convert it: CloudCompare -O IN.e57 -C_EXPORT_FMT PLY -SAVE_CLOUDS, or pdal translate IN.e57 OUT.ply");
+    return input->error(
+        ErrorCode::kUnsupported,
+        "E57 is not read; convert it: CloudCompare -O IN.e57 -C_EXPORT_FMT PLY -SAVE_CLOUDS, or pdal translate IN.e57 OUT.ply");
   }
   if (extension == ".laz") {
-    return input->error(ErrorCode::kUnsupported, "LAZ is not read; convert it: pdal translate IN.laz OUT.las, or with CloudCompare to LAS or PLY");
+    return input->error(ErrorCode::kUnsupported,
+                        "LAZ is not read; convert it: pdal translate IN.laz OUT.las, or with CloudCompare to LAS or PLY");
   }
   if (start.starts_with("LASF")) return Reader{read_las};
   if (start.starts_with("ply\n") || start.starts_with("ply\r")) return Reader{read_ply};
@@ -63,10 +67,16 @@ double load(const std::byte* bytes, bool is_swapped) {
 
 std::size_t scalar_bytes(ScalarType type) {
   switch (type) {
-    case ScalarType::kInt8: case ScalarType::kUint8: return 1;
-    case ScalarType::kInt16: case ScalarType::kUint16: return 2;
-    case ScalarType::kInt32: case ScalarType::kUint32: case ScalarType::kFloat32: return 4;
-    case ScalarType::kInt64: case ScalarType::kUint64: case ScalarType::kFloat64: return 8;
+    case ScalarType::kInt8:
+    case ScalarType::kUint8: return 1;
+    case ScalarType::kInt16:
+    case ScalarType::kUint16: return 2;
+    case ScalarType::kInt32:
+    case ScalarType::kUint32:
+    case ScalarType::kFloat32: return 4;
+    case ScalarType::kInt64:
+    case ScalarType::kUint64:
+    case ScalarType::kFloat64: return 8;
   }
   return 0;
 }
@@ -88,7 +98,8 @@ double read_scalar(ScalarType type, const std::byte* bytes, bool is_big_endian) 
   return 0;
 }
 
-Result<PointCloud> read_cloud(std::istream& stream, const std::string& name, const CloudOptions& options, const CloudProgress& progress) {
+Result<PointCloud> read_cloud(std::istream& stream, const std::string& name, const CloudOptions& options,
+                              const CloudProgress& progress) {
   CloudInput input(stream, name, progress);
   const auto reader = choose_reader(&input);
   if (!reader.is_ok()) return reader.status();
@@ -99,7 +110,8 @@ Result<PointCloud> read_cloud(std::istream& stream, const std::string& name, con
   PointCloud cloud = accumulator.finish();
   if (cloud.num_read == 0) return input.error(ErrorCode::kInvalid, "holds no points");
   if (cloud.points_m.empty()) {
-    return input.error(ErrorCode::kInvalid, "none of its " + std::to_string(cloud.num_read) + " points is valid (not finite, or withheld)");
+    return input.error(ErrorCode::kInvalid,
+                       "none of its " + std::to_string(cloud.num_read) + " points is valid (not finite, or withheld)");
   }
   return cloud;
 }

@@ -15,19 +15,24 @@ namespace {
 
 constexpr float kPlaneRadiusM = 0.08F;
 constexpr std::size_t kMinPlanePoints = 12;
-constexpr std::size_t kMaxPlanePoints = 256;   // a plane is known well enough then
+constexpr std::size_t kMaxPlanePoints = 256;  // a plane is known well enough then
 
 struct Adaptor {
   std::span<const Eigen::Vector3f> points;
   [[nodiscard]] std::size_t kdtree_get_point_count() const { return points.size(); }
-  [[nodiscard]] float kdtree_get_pt(std::uint32_t index, std::size_t axis) const { return points[index][static_cast<Eigen::Index>(axis)]; }
+  [[nodiscard]] float kdtree_get_pt(std::uint32_t index, std::size_t axis) const {
+    return points[index][static_cast<Eigen::Index>(axis)];
+  }
   template <typename Box>
-  bool kdtree_get_bbox(Box&) const { return false; }
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
 };
 
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Adaptor>, Adaptor, 3, std::uint32_t>;
 
-CloudIndex::Plane fit_plane(std::span<const Eigen::Vector3f> points, std::span<const std::uint32_t> neighbors, std::uint32_t center) {
+CloudIndex::Plane fit_plane(std::span<const Eigen::Vector3f> points, std::span<const std::uint32_t> neighbors,
+                            std::uint32_t center) {
   const Eigen::Vector3d origin = points[center].cast<double>();
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
@@ -43,7 +48,8 @@ CloudIndex::Plane fit_plane(std::span<const Eigen::Vector3f> points, std::span<c
   CloudIndex::Plane plane;
   plane.normal = solver.eigenvectors().col(0).normalized();
   if (!plane.normal.allFinite()) plane.normal = Eigen::Vector3d::UnitZ();
-  plane.is_flat = neighbors.size() >= 5 && std::sqrt(std::max(0.0, solver.eigenvalues()[0])) < 0.33 * std::sqrt(std::max(0.0, solver.eigenvalues()[1]));
+  plane.is_flat = neighbors.size() >= 5 &&
+                  std::sqrt(std::max(0.0, solver.eigenvalues()[0])) < 0.33 * std::sqrt(std::max(0.0, solver.eigenvalues()[1]));
   plane.point_m = plane.is_flat ? Eigen::Vector3d(origin + mean) : origin;
   return plane;
 }
@@ -51,7 +57,8 @@ CloudIndex::Plane fit_plane(std::span<const Eigen::Vector3f> points, std::span<c
 }  // namespace
 
 struct CloudIndex::Impl {
-  explicit Impl(std::span<const Eigen::Vector3f> points) : adaptor{points}, tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(16)) {}
+  explicit Impl(std::span<const Eigen::Vector3f> points)
+      : adaptor{points}, tree(3, adaptor, nanoflann::KDTreeSingleIndexAdaptorParams(16)) {}
   Adaptor adaptor;
   Tree tree;
   std::unordered_map<std::uint32_t, Plane> planes;
@@ -75,8 +82,10 @@ std::optional<CloudIndex::Neighbor> CloudIndex::nearest(const Eigen::Vector3d& p
   result.init(&index, &squared_m2);
   // An upper bound from the start cuts the search short far from the cloud.
   const double limit = max_distance_m * max_distance_m;
-  if (limit < static_cast<double>(std::numeric_limits<float>::max())) squared_m2 = static_cast<float>(limit);
-  else squared_m2 = std::numeric_limits<float>::max();
+  if (limit < static_cast<double>(std::numeric_limits<float>::max()))
+    squared_m2 = static_cast<float>(limit);
+  else
+    squared_m2 = std::numeric_limits<float>::max();
   impl_->tree.findNeighbors(result, query.data(), nanoflann::SearchParams());
   if (result.size() == 0) return std::nullopt;
   return Neighbor{index, (p_m - impl_->adaptor.points[index].cast<double>()).norm()};

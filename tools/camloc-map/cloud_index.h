@@ -28,9 +28,9 @@ class CloudIndex {
   };
   /// The local surface at a point of the cloud.
   struct Plane {
-    Eigen::Vector3d point_m;       ///< on it: the middle of the neighbours, or the point itself where they are no plane
-    Eigen::Vector3d normal;        ///< unit; the sign means nothing
-    bool is_flat = false;          ///< the neighbours lie in a plane: thickness below a third of their width
+    Eigen::Vector3d point_m;  ///< on it: the middle of the neighbours, or the point itself where they are no plane
+    Eigen::Vector3d normal;   ///< unit; the sign means nothing
+    bool is_flat = false;     ///< the neighbours lie in a plane: thickness below a third of their width
   };
 
   [[nodiscard]] std::span<const Eigen::Vector3f> points_m() const;

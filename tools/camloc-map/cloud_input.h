@@ -37,8 +37,8 @@ class CloudInput {
   [[nodiscard]] std::span<const std::byte> read(std::size_t size);
   /// False where the file ends before.
   [[nodiscard]] bool skip(std::uint64_t size);
-  /// The next line without its end ("\n", "\r\n" or "\r" alone), valid until the next call; nothing at the end of the file. A line
-  /// longer than kMaxLine is cut there, its rest is the next line.
+  /// The next line without its end ("\n", "\r\n" or "\r" alone), valid until the next call; nothing at the end of the file. A
+  /// line longer than kMaxLine is cut there, its rest is the next line.
   [[nodiscard]] std::optional<std::string_view> read_line();
   /// True when progress said stop.
   [[nodiscard]] bool is_stopped() const { return is_stopped_; }
@@ -57,7 +57,7 @@ class CloudInput {
   std::istream& stream_;
   std::string name_;
   CloudProgress progress_;
-  std::uint64_t total_ = 0, consumed_ = 0;   ///< consumed_: bytes of the file before the buffer
+  std::uint64_t total_ = 0, consumed_ = 0;  ///< consumed_: bytes of the file before the buffer
   std::vector<std::byte> buffer_;
   std::size_t next_ = 0, end_ = 0;
   bool is_stopped_ = false;

@@ -47,12 +47,14 @@ struct Header {
 
 std::optional<ScalarType> type_named(std::string_view name) {
   static constexpr std::pair<std::string_view, ScalarType> kNames[] = {
-      {"char", ScalarType::kInt8}, {"int8", ScalarType::kInt8}, {"uchar", ScalarType::kUint8}, {"uint8", ScalarType::kUint8},
-      {"short", ScalarType::kInt16}, {"int16", ScalarType::kInt16}, {"ushort", ScalarType::kUint16}, {"uint16", ScalarType::kUint16},
-      {"int", ScalarType::kInt32}, {"int32", ScalarType::kInt32}, {"uint", ScalarType::kUint32}, {"uint32", ScalarType::kUint32},
-      {"int64", ScalarType::kInt64}, {"uint64", ScalarType::kUint64}, {"float", ScalarType::kFloat32}, {"float32", ScalarType::kFloat32},
-      {"double", ScalarType::kFloat64}, {"float64", ScalarType::kFloat64}};
-  for (const auto& [known, type] : kNames) if (name == known) return type;
+      {"char", ScalarType::kInt8},       {"int8", ScalarType::kInt8},      {"uchar", ScalarType::kUint8},
+      {"uint8", ScalarType::kUint8},     {"short", ScalarType::kInt16},    {"int16", ScalarType::kInt16},
+      {"ushort", ScalarType::kUint16},   {"uint16", ScalarType::kUint16},  {"int", ScalarType::kInt32},
+      {"int32", ScalarType::kInt32},     {"uint", ScalarType::kUint32},    {"uint32", ScalarType::kUint32},
+      {"int64", ScalarType::kInt64},     {"uint64", ScalarType::kUint64},  {"float", ScalarType::kFloat32},
+      {"float32", ScalarType::kFloat32}, {"double", ScalarType::kFloat64}, {"float64", ScalarType::kFloat64}};
+  for (const auto& [known, type] : kNames)
+    if (name == known) return type;
   return std::nullopt;
 }
 
@@ -104,7 +106,8 @@ Result<Header> read_header(CloudInput* input) {
       if (!has_format) return input->error(ErrorCode::kCorrupt, "the PLY header has no format line");
       return header;
     }
-    if (!parse_header_line(text, &header, &has_format)) return line_error(input->name(), number, "no PLY header line: " + in_quotes(text));
+    if (!parse_header_line(text, &header, &has_format))
+      return line_error(input->name(), number, "no PLY header line: " + in_quotes(text));
   }
   return input->error(ErrorCode::kCorrupt, "the PLY header has more than " + std::to_string(kMaxHeaderLines) + " lines");
 }
@@ -123,8 +126,8 @@ std::optional<std::array<std::size_t, 3>> find_axes(const Element& element) {
 }
 
 Status cut_off(const CloudInput& input, const Element& element, std::uint64_t done) {
-  return input.truncated("the header promises " + std::to_string(element.count) + " of element '" + element.name + "', the file has " +
-                         std::to_string(done));
+  return input.truncated("the header promises " + std::to_string(element.count) + " of element '" + element.name +
+                         "', the file has " + std::to_string(done));
 }
 
 /// One binary element, its lists skipped; `values` gets the scalars. False where the file ends.
@@ -155,7 +158,8 @@ Status read_binary_records(CloudInput* input, const Element& element, bool is_bi
     if (record.empty()) return cut_off(*input, element, i);
     Eigen::Vector3d p;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      p[static_cast<Eigen::Index>(axis)] = read_scalar(element.properties[axes[axis]].type, record.data() + offsets[axis], is_big_endian);
+      p[static_cast<Eigen::Index>(axis)] =
+          read_scalar(element.properties[axes[axis]].type, record.data() + offsets[axis], is_big_endian);
     }
     cloud->add(p);
   }
@@ -189,15 +193,16 @@ bool parse_ascii_element(std::string_view line, const Element& element, std::vec
   return true;
 }
 
-Status read_ascii_vertices(CloudInput* input, const Element& element, const std::array<std::size_t, 3>& axes, CloudAccumulator* cloud) {
+Status read_ascii_vertices(CloudInput* input, const Element& element, const std::array<std::size_t, 3>& axes,
+                           CloudAccumulator* cloud) {
   std::vector<double> values(element.properties.size());
   for (std::uint64_t i = 0; i < element.count;) {
     const auto line = input->read_line();
     if (!line) return cut_off(*input, element, i);
     if (trimmed(*line).empty()) continue;
     if (!parse_ascii_element(*line, element, &values)) {
-      return input->error(ErrorCode::kCorrupt, "vertex " + std::to_string(i) + " is no line of " + std::to_string(values.size()) + " numbers: " +
-                                                   in_quotes(trimmed(*line)));
+      return input->error(ErrorCode::kCorrupt, "vertex " + std::to_string(i) + " is no line of " + std::to_string(values.size()) +
+                                                   " numbers: " + in_quotes(trimmed(*line)));
     }
     cloud->add({values[axes[0]], values[axes[1]], values[axes[2]]});
     ++i;
@@ -209,7 +214,8 @@ Status skip_element(CloudInput* input, const Element& element, const Header& hea
   std::vector<double> values(element.properties.size());
   if (element.properties.empty()) return Status::ok();
   for (std::uint64_t i = 0; i < element.count; ++i) {
-    const bool is_there = header.is_ascii ? input->read_line().has_value() : read_binary_element(input, element, header.is_big_endian, &values);
+    const bool is_there =
+        header.is_ascii ? input->read_line().has_value() : read_binary_element(input, element, header.is_big_endian, &values);
     if (!is_there) return cut_off(*input, element, i);
   }
   return Status::ok();
@@ -225,8 +231,8 @@ Status read_ply(CloudInput* input, CloudAccumulator* cloud) {
     const std::uint64_t min_bytes = header.value().is_ascii ? 2 * element.properties.size() : element.min_bytes();
     const auto bytes = checked_multiply(element.count, min_bytes);
     if (!bytes || *bytes > input->remaining() + 1) {
-      return input->truncated("the header promises " + std::to_string(element.count) + " of element '" + element.name + "', which do not fit into " +
-                              std::to_string(input->remaining()) + " bytes");
+      return input->truncated("the header promises " + std::to_string(element.count) + " of element '" + element.name +
+                              "', which do not fit into " + std::to_string(input->remaining()) + " bytes");
     }
     if (element.name != "vertex") {
       if (const Status skipped = skip_element(input, element, header.value()); !skipped.is_ok()) return skipped;

@@ -14,14 +14,14 @@ using Matrix7d = Eigen::Matrix<double, 7, 7>;
 using Vector7d = Eigen::Matrix<double, 7, 1>;
 
 constexpr std::size_t kMinCorrespondences = 10;
-constexpr double kShrink = 0.7;              // of the distance limit, an iteration
+constexpr double kShrink = 0.7;  // of the distance limit, an iteration
 constexpr double kMinKernelM = 0.002;
-constexpr double kStillM = 2e-5, kStillRad = 2e-6;           // nothing will change any more
-constexpr double kConvergedM = 3e-4, kConvergedRad = 2e-4;   // correspondences that flip between points keep it moving this much
+constexpr double kStillM = 2e-5, kStillRad = 2e-6;          // nothing will change any more
+constexpr double kConvergedM = 3e-4, kConvergedRad = 2e-4;  // correspondences that flip between points keep it moving this much
 constexpr int kFinalIterations = 10;
 
 struct Correspondence {
-  Eigen::Vector3d p;        ///< landmark in the cloud's frame
+  Eigen::Vector3d p;  ///< landmark in the cloud's frame
   CloudIndex::Neighbor neighbor;
 };
 
@@ -35,7 +35,7 @@ double median_of(std::vector<double> values) {
 struct Equations {
   Matrix7d information = Matrix7d::Zero();
   Vector7d gradient = Vector7d::Zero();
-  Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();   ///< mean of n n^T
+  Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();  ///< mean of n n^T
   double sum_squares = 0, sum_weights = 0;
 };
 
@@ -71,16 +71,19 @@ std::vector<Eigen::Vector3d> choose(std::span<const Eigen::Vector3d> points, std
   return chosen;
 }
 
-std::vector<Correspondence> find_correspondences(const std::vector<Eigen::Vector3d>& points_map, const CloudIndex& cloud, const Similarity3& T_cloud_map,
-                                                 double max_distance_m, double trim) {
+std::vector<Correspondence> find_correspondences(const std::vector<Eigen::Vector3d>& points_map, const CloudIndex& cloud,
+                                                 const Similarity3& T_cloud_map, double max_distance_m, double trim) {
   std::vector<Correspondence> pairs;
   for (const Eigen::Vector3d& p_map : points_map) {
     const Eigen::Vector3d p = T_cloud_map * p_map;
     if (const auto neighbor = cloud.nearest(p, max_distance_m)) pairs.push_back({p, *neighbor});
   }
-  const auto num_kept = std::max(std::min(kMinCorrespondences, pairs.size()), static_cast<std::size_t>(trim * static_cast<double>(pairs.size())));
+  const auto num_kept =
+      std::max(std::min(kMinCorrespondences, pairs.size()), static_cast<std::size_t>(trim * static_cast<double>(pairs.size())));
   if (num_kept < pairs.size()) {
-    const auto is_closer = [](const Correspondence& a, const Correspondence& b) { return a.neighbor.distance_m < b.neighbor.distance_m; };
+    const auto is_closer = [](const Correspondence& a, const Correspondence& b) {
+      return a.neighbor.distance_m < b.neighbor.distance_m;
+    };
     std::nth_element(pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(num_kept), pairs.end(), is_closer);
     pairs.resize(num_kept);
   }
@@ -96,7 +99,7 @@ Eigen::Vector3d mean_of(const std::vector<Correspondence>& pairs) {
 /// The step that solves the equations, applied about `center`; returns it.
 Vector7d take_step(const Equations& equations, const Eigen::Vector3d& center, bool has_scale, Similarity3* T_cloud_map) {
   Matrix7d information = equations.information;
-  information.diagonal().array() += 1e-6 * information.diagonal().array() + 1e-9;   // directions nothing holds stay where they are
+  information.diagonal().array() += 1e-6 * information.diagonal().array() + 1e-9;  // directions nothing holds stay where they are
   Vector7d step = Vector7d::Zero();
   if (has_scale) {
     step = -information.ldlt().solve(equations.gradient);
@@ -136,8 +139,9 @@ Result<Registration> register_points(std::span<const Eigen::Vector3d> points_map
   for (; result.num_iterations < options.max_iterations; ++result.num_iterations) {
     const auto pairs = find_correspondences(points, *cloud, result.T_cloud_map, limit_m, trim);
     if (pairs.size() < kMinCorrespondences) {
-      return {ErrorCode::kInvalid, "only " + std::to_string(pairs.size()) + " of " + std::to_string(points.size()) + " landmarks have a point of the cloud within " +
-                                       std::to_string(limit_m).substr(0, 4) + " m"};
+      return {ErrorCode::kInvalid, "only " + std::to_string(pairs.size()) + " of " + std::to_string(points.size()) +
+                                       " landmarks have a point of the cloud within " + std::to_string(limit_m).substr(0, 4) +
+                                       " m"};
     }
     const Eigen::Vector3d center = mean_of(pairs);
     const Equations equations = build_equations(pairs, cloud, center);
@@ -147,7 +151,8 @@ Result<Registration> register_points(std::span<const Eigen::Vector3d> points_map
       return step.head<3>().norm() < step_rad && step.segment<3>(3).norm() < step_m && std::abs(step[6]) < step_rad;
     };
     const bool is_still = is_below(kStillM, kStillRad);
-    if (trim < 1 && ((is_still && limit_m <= options.max_distance_m) || result.num_iterations >= options.max_iterations - kFinalIterations)) {
+    if (trim < 1 &&
+        ((is_still && limit_m <= options.max_distance_m) || result.num_iterations >= options.max_iterations - kFinalIterations)) {
       trim = 1;
     } else if (trim >= 1) {
       result.is_converged = is_below(kConvergedM, kConvergedRad);
@@ -158,7 +163,8 @@ Result<Registration> register_points(std::span<const Eigen::Vector3d> points_map
   return result;
 }
 
-double capped_mean_distance(std::span<const Eigen::Vector3d> points_map, const CloudIndex& cloud, const Rigid3& T_cloud_map, double max_distance_m) {
+double capped_mean_distance(std::span<const Eigen::Vector3d> points_map, const CloudIndex& cloud, const Rigid3& T_cloud_map,
+                            double max_distance_m) {
   double sum = 0;
   for (const Eigen::Vector3d& p : points_map) {
     const auto neighbor = cloud.nearest(T_cloud_map * p, max_distance_m);

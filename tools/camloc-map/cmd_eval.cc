@@ -48,7 +48,8 @@ struct EvalArguments {
 Result<PointCloud> load_scan(const EvalArguments& arguments, ProgressLine* progress) {
   const auto on_progress = [&](std::uint64_t done, std::uint64_t total) {
     char text[64];
-    std::snprintf(text, sizeof text, "reading the cloud: %.0f of %.0f MB", static_cast<double>(done) / 1e6, static_cast<double>(total) / 1e6);
+    std::snprintf(text, sizeof text, "reading the cloud: %.0f of %.0f MB", static_cast<double>(done) / 1e6,
+                  static_cast<double>(total) / 1e6);
     progress->say(text);
     return !InterruptGuard::is_interrupted();
   };
@@ -61,10 +62,12 @@ Result<std::vector<PosePair>> match_poses(const std::string& trajectory_path, co
   if (!trajectory.is_ok()) return trajectory.status();
   std::vector<PosePair> pairs;
   for (const StampedPose& pose : trajectory.value()) {
-    if (const auto T_reference_camera = pose_at(reference, pose.stamp_ns)) pairs.push_back({pose.T_world_camera, *T_reference_camera});
+    if (const auto T_reference_camera = pose_at(reference, pose.stamp_ns))
+      pairs.push_back({pose.T_world_camera, *T_reference_camera});
   }
   if (pairs.size() >= 3) return pairs;
-  return {ErrorCode::kInvalid, trajectory_path + ": only " + std::to_string(pairs.size()) + " of its " + std::to_string(trajectory.value().size()) +
+  return {ErrorCode::kInvalid, trajectory_path + ": only " + std::to_string(pairs.size()) + " of its " +
+                                   std::to_string(trajectory.value().size()) +
                                    " poses are at the time of a reference pose; is it of this recording?"};
 }
 
@@ -73,7 +76,8 @@ Result<std::vector<StampedPose>> stamped(const PosedFrames& frames) {
   const auto sequence = read_sequence(frames.folder);
   if (!sequence.is_ok()) return sequence.status();
   std::vector<StampedPose> poses;
-  for (const auto& [index, T_map_camera] : frames.T_map_camera_of_frame) poses.push_back({sequence.value().frames[index].stamp_ns, T_map_camera});
+  for (const auto& [index, T_map_camera] : frames.T_map_camera_of_frame)
+    poses.push_back({sequence.value().frames[index].stamp_ns, T_map_camera});
   return poses;
 }
 
@@ -107,11 +111,13 @@ Status write_files(const EvalArguments& arguments, const PointCloud& cloud, Eval
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return {ErrorCode::kIo, "--out-dir " + arguments.out_dir + ": " + error.message()};
-  const std::string title = std::filesystem::path(arguments.map_path).filename().string() + " against " + std::filesystem::path(summary->cloud_name).filename().string();
+  const std::string title = std::filesystem::path(arguments.map_path).filename().string() + " against " +
+                            std::filesystem::path(summary->cloud_name).filename().string();
   const Evaluation& e = summary->evaluation;
-  const std::pair<const char*, ColorImage> pictures[] = {{"histogram.png", draw_histogram(e.distances, title)},
-                                                         {"top.png", draw_cloud_view(e, cloud, CloudView::kTop, title + ", from above")},
-                                                         {"side.png", draw_cloud_view(e, cloud, CloudView::kSide, title + ", from the side")}};
+  const std::pair<const char*, ColorImage> pictures[] = {
+      {"histogram.png", draw_histogram(e.distances, title)},
+      {"top.png", draw_cloud_view(e, cloud, CloudView::kTop, title + ", from above")},
+      {"side.png", draw_cloud_view(e, cloud, CloudView::kSide, title + ", from the side")}};
   for (const auto& [name, image] : pictures) {
     const std::string path = (folder / name).string();
     if (const Status written = write_png(path, image); !written.is_ok()) return written;
@@ -148,7 +154,11 @@ Status evaluate(const EvalArguments& arguments, const MapView& map, EvalSummary*
   const auto cloud = is_scan ? load_scan(arguments, &progress) : load_reference(arguments, &input.poses, &progress);
   if (!cloud.is_ok()) return cloud.status();
   input.cloud = &cloud.value();
-  auto evaluation = evaluate_map(input, arguments.options, [&](const std::string& stage) {
+  EvaluationOptions options = arguments.options;
+  // A recording's poses are in a frame of their own: the datum of the map says nothing about it.
+  if (!is_scan && options.start == AlignStart::kAuto && input.points.empty() && input.poses.empty())
+    options.start = AlignStart::kSearch;
+  auto evaluation = evaluate_map(input, options, [&](const std::string& stage) {
     progress.say(stage);
     return !InterruptGuard::is_interrupted();
   });
@@ -170,17 +180,21 @@ Status evaluate(const EvalArguments& arguments, const MapView& map, EvalSummary*
 
 Status check(const EvalArguments& arguments) {
   if (arguments.lidar_path.empty() == arguments.reference.sequence.empty()) {
-    return {ErrorCode::kInvalid, "give a cloud to compare with: either --lidar CLOUD, or --reference-sequence DIR with --camera FILE"};
+    return {ErrorCode::kInvalid,
+            "give a cloud to compare with: either --lidar CLOUD, or --reference-sequence DIR with --camera FILE"};
   }
-  if (!arguments.reference.sequence.empty() && arguments.camera_path.empty()) return {ErrorCode::kInvalid, "--reference-sequence needs --camera FILE"};
+  if (!arguments.reference.sequence.empty() && arguments.camera_path.empty())
+    return {ErrorCode::kInvalid, "--reference-sequence needs --camera FILE"};
   const bool has_reference_poses = !arguments.reference.sequence.empty() || !arguments.reference_trajectory_path.empty();
   if (!arguments.trajectory_path.empty() && !has_reference_poses) {
-    return {ErrorCode::kInvalid, "--trajectory needs poses to compare it with: --reference-trajectory FILE in the frame of the scan"};
+    return {ErrorCode::kInvalid,
+            "--trajectory needs poses to compare it with: --reference-trajectory FILE in the frame of the scan"};
   }
   if (!arguments.reference_trajectory_path.empty() && (arguments.trajectory_path.empty() || arguments.lidar_path.empty())) {
     return {ErrorCode::kInvalid, "--reference-trajectory goes with --lidar and --trajectory"};
   }
-  if (!arguments.out_dir.empty() && std::filesystem::exists(arguments.out_dir) && !std::filesystem::is_directory(arguments.out_dir)) {
+  if (!arguments.out_dir.empty() && std::filesystem::exists(arguments.out_dir) &&
+      !std::filesystem::is_directory(arguments.out_dir)) {
     return {ErrorCode::kInvalid, "--out-dir " + arguments.out_dir + ": is a file; give a folder"};
   }
   return Status::ok();
@@ -197,7 +211,8 @@ int run(const EvalArguments& arguments) {
   const auto map = MapView::open(arguments.map_path);
   if (!map.is_ok()) return report_error(map.status(), exit_code_of(map.status()));
   EvalSummary summary;
-  if (const Status done = evaluate(arguments, map.value(), &summary); !done.is_ok()) return report_error(done, exit_code_of(done));
+  if (const Status done = evaluate(arguments, map.value(), &summary); !done.is_ok())
+    return report_error(done, exit_code_of(done));
   const std::string text = arguments.is_json ? format_json(summary) : format_table(summary);
   return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0 ? 0 : 1;
 }
@@ -205,31 +220,44 @@ int run(const EvalArguments& arguments) {
 void add_reference_options(CLI::App* command, EvalArguments* arguments) {
   command->add_option("--lidar", arguments->lidar_path, "Scan to compare with: PLY, PCD, LAS, or text (XYZ, PTS, CSV)");
   const std::map<std::string, double> units{{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"ft", 0.3048}};
-  command->add_option("--lidar-unit", arguments->lidar_unit_m, "Unit of the scan: m, cm, mm, ft (default m)")->transform(CLI::CheckedTransformer(units));
+  command->add_option("--lidar-unit", arguments->lidar_unit_m, "Unit of the scan: m, cm, mm, ft (default m)")
+      ->transform(CLI::CheckedTransformer(units));
   command->add_option("--reference-sequence", arguments->reference.sequence,
                       "Instead of a scan: recording whose depth images and poses make a dense cloud (TUM RGB-D or 7-Scenes)");
   command->add_option("--camera", arguments->camera_path, "Calibration of that recording");
-  command->add_option("--poses", arguments->reference.poses, "Its poses: 'embedded' (default) or a trajectory file in TUM format");
-  command->add_option("--frame-step", arguments->frame_step, "Every so many of its frames (default 5)")->check(CLI::Range(1, 100000));
+  command->add_option("--poses", arguments->reference.poses,
+                      "Its poses: 'embedded' (default) or a trajectory file in TUM format");
+  command->add_option("--frame-step", arguments->frame_step, "Every so many of its frames (default 5)")
+      ->check(CLI::Range(1, 100000));
 }
 
 void add_alignment_options(CLI::App* command, EvalArguments* arguments) {
-  command->add_option("--points", arguments->points_path, "Control points, a line each: name map_x map_y map_z cloud_x cloud_y cloud_z [sigma]");
-  command->add_option("--trajectory", arguments->trajectory_path, "Trajectory of the map's recording in the map's frame, TUM format: aligned with that of the reference");
-  command->add_option("--reference-trajectory", arguments->reference_trajectory_path, "The same recording in the frame of the scan, TUM format");
-  const std::map<std::string, AlignStart> starts{{"auto", AlignStart::kAuto},     {"points", AlignStart::kPoints}, {"trajectory", AlignStart::kTrajectory},
-                                                 {"datum", AlignStart::kDatum},   {"none", AlignStart::kNone},     {"search", AlignStart::kSearch}};
+  command->add_option("--points", arguments->points_path,
+                      "Control points, a line each: name map_x map_y map_z cloud_x cloud_y cloud_z [sigma]");
+  command->add_option("--trajectory", arguments->trajectory_path,
+                      "Trajectory of the map's recording in the map's frame, TUM format: aligned with that of the reference");
+  command->add_option("--reference-trajectory", arguments->reference_trajectory_path,
+                      "The same recording in the frame of the scan, TUM format");
+  const std::map<std::string, AlignStart> starts{
+      {"auto", AlignStart::kAuto},   {"points", AlignStart::kPoints}, {"trajectory", AlignStart::kTrajectory},
+      {"datum", AlignStart::kDatum}, {"none", AlignStart::kNone},     {"search", AlignStart::kSearch}};
   command
       ->add_option("--align", arguments->options.start,
-                   "Where the alignment starts: points, trajectory, datum (of the map), none (frames are equal), search; auto (default): the "
+                   "Where the alignment starts: points, trajectory, datum (of the map), none (frames are equal), search; auto "
+                   "(default): the "
                    "first of these that is given, else search")
       ->transform(CLI::CheckedTransformer(starts));
   command->add_flag("!--no-icp", arguments->options.has_icp, "Measure at the start, without fitting the surfaces");
-  command->add_option("--trim", arguments->options.trim, "Share of the closest correspondences that ICP uses (default 0.9)")->check(CLI::Range(0.1, 1.0));
-  command->add_option("--max-distance", arguments->options.max_distance_m, "Farther from the cloud a landmark is outside of the scan, metres (default 0.5)")
+  command->add_option("--trim", arguments->options.trim, "Share of the closest correspondences that ICP uses (default 0.9)")
+      ->check(CLI::Range(0.1, 1.0));
+  command
+      ->add_option("--max-distance", arguments->options.max_distance_m,
+                   "Farther from the cloud a landmark is outside of the scan, metres (default 0.5)")
       ->check(CLI::Range(0.01, 100.0));
-  command->add_option("--voxel", arguments->voxel_m, "Thin the cloud to a point a voxel of this size, metres (default 0.01)")->check(CLI::Range(0.001, 1.0));
-  command->add_option("--min-observations", arguments->options.min_observations, "Landmarks seen by fewer frames are left out (default 2)");
+  command->add_option("--voxel", arguments->voxel_m, "Thin the cloud to a point a voxel of this size, metres (default 0.01)")
+      ->check(CLI::Range(0.001, 1.0));
+  command->add_option("--min-observations", arguments->options.min_observations,
+                      "Landmarks seen by fewer frames are left out (default 2)");
 }
 
 }  // namespace

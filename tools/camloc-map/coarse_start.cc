@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Where a map lies in a cloud when nobody says it; declared in cloud_registration.h. Buildings have walls in three directions: the
-// map's are laid onto the cloud's in all 24 ways, and for each the translation is found by sliding the map's cells over the
+// Where a map lies in a cloud when nobody says it; declared in cloud_registration.h. Buildings have walls in three directions:
+// the map's are laid onto the cloud's in all 24 ways, and for each the translation is found by sliding the map's cells over the
 // cloud's, which works where the map holds only a part of the scan. The best places are improved by closest points.
 #include <algorithm>
 #include <cmath>
@@ -17,18 +17,18 @@
 namespace camloc::map_tool {
 namespace {
 
-constexpr double kCellM = 0.25;            // surfaces count by area, not by how often they were scanned
+constexpr double kCellM = 0.25;  // surfaces count by area, not by how often they were scanned
 constexpr std::size_t kNumSamples = 800;
 constexpr std::size_t kMaxCells = 300000;  // of the grid in which the map is slid; larger sites get larger cells
 constexpr std::size_t kNumImproved = 30, kNumKept = 6;
 constexpr double kTrim = 0.75;
-constexpr double kFarM = 3;                // what is farther counts as this far
+constexpr double kFarM = 3;  // what is farther counts as this far
 constexpr int kIterations = 12;
 constexpr double kSamePlaceM = 0.5, kSamePlaceRad = 0.17;
 
 struct Candidate {
   Rigid3 T_cloud_map;
-  double score = 0;   ///< correlation, then the trimmed mean distance in metres
+  double score = 0;  ///< correlation, then the trimmed mean distance in metres
 };
 
 template <typename Points>
@@ -70,14 +70,17 @@ bool is_same_place(const Rigid3& a, const Rigid3& b, const Eigen::Vector3d& cent
 }
 
 /// The closest pairs, and the mean distance of the closest samples.
-double match(const std::vector<Eigen::Vector3d>& samples, const CloudIndex& cloud, const Rigid3& T_cloud_map, std::vector<PointPair>* pairs) {
+double match(const std::vector<Eigen::Vector3d>& samples, const CloudIndex& cloud, const Rigid3& T_cloud_map,
+             std::vector<PointPair>* pairs) {
   std::vector<std::pair<double, PointPair>> found;
   for (const Eigen::Vector3d& p_map : samples) {
     const auto neighbor = cloud.nearest(T_cloud_map * p_map, kFarM);
     if (neighbor) found.push_back({neighbor->distance_m, {cloud.points_m()[neighbor->index].cast<double>(), p_map}});
   }
-  const auto num_wanted = static_cast<std::size_t>(kTrim * static_cast<double>(samples.size())), num_kept = std::min(num_wanted, found.size());
-  std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(num_kept), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  const auto num_wanted = static_cast<std::size_t>(kTrim * static_cast<double>(samples.size())),
+             num_kept = std::min(num_wanted, found.size());
+  std::nth_element(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(num_kept), found.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   double sum = kFarM * static_cast<double>(num_wanted - num_kept);
   pairs->clear();
   for (std::size_t i = 0; i < num_kept; ++i) {
@@ -115,7 +118,9 @@ std::vector<Candidate> slide(const std::vector<Eigen::Vector3d>& samples, const 
     std::vector<Eigen::Vector3d> points;
     for (const Eigen::Vector3d& p : samples) points.push_back(R_grid_map * p);
     for (const CellGrid::Place& place : grid.best_places(points, 5)) {
-      candidates.push_back({{Eigen::Quaterniond(Eigen::Matrix3d(cloud_axes * R_grid_map)).normalized(), cloud_axes * place.translation_m}, place.share});
+      candidates.push_back(
+          {{Eigen::Quaterniond(Eigen::Matrix3d(cloud_axes * R_grid_map)).normalized(), cloud_axes * place.translation_m},
+           place.share});
     }
   }
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
@@ -125,11 +130,14 @@ std::vector<Candidate> slide(const std::vector<Eigen::Vector3d>& samples, const 
 
 }  // namespace
 
-Result<std::vector<CoarseStart>> find_coarse_starts(std::span<const Eigen::Vector3d> points_map, std::span<const Eigen::Vector3f> cloud_m,
+Result<std::vector<CoarseStart>> find_coarse_starts(std::span<const Eigen::Vector3d> points_map,
+                                                    std::span<const Eigen::Vector3f> cloud_m,
                                                     const Eigen::Vector3d& cloud_origin_m) {
-  const std::vector<Eigen::Vector3d> cloud_cells = absolute(thinned(cloud_m, kCellM / 2)), map_cells = absolute(thinned(points_map, kCellM / 2));
+  const std::vector<Eigen::Vector3d> cloud_cells = absolute(thinned(cloud_m, kCellM / 2)),
+                                     map_cells = absolute(thinned(points_map, kCellM / 2));
   if (map_cells.size() < 20 || cloud_cells.size() < 20) {
-    return {ErrorCode::kInvalid, "map or cloud is smaller than a metre, too small to find a start; give control points (--points)"};
+    return {ErrorCode::kInvalid,
+            "map or cloud is smaller than a metre, too small to find a start; give control points (--points)"};
   }
   const std::vector<Eigen::Vector3d> samples = choose(absolute(thinned(map_cells, kCellM)), kNumSamples);
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
@@ -142,11 +150,14 @@ Result<std::vector<CoarseStart>> find_coarse_starts(std::span<const Eigen::Vecto
   for (const Eigen::Vector3d& p : cloud_cells) targets.push_back(p.cast<float>());
   const CloudIndex index(targets);
   for (Candidate& candidate : candidates) improve(samples, index, &candidate);
-  std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
 
   std::vector<CoarseStart> starts;
   for (const Candidate& candidate : candidates) {
-    const auto is_known = [&](const CoarseStart& start) { return is_same_place(start.T_cloud_map, candidate.T_cloud_map, center); };
+    const auto is_known = [&](const CoarseStart& start) {
+      return is_same_place(start.T_cloud_map, candidate.T_cloud_map, center);
+    };
     if (starts.size() >= kNumKept || std::any_of(starts.begin(), starts.end(), is_known)) continue;
     // The map's own frame as it is, so that the report can say how far off it was.
     const bool is_identity = is_same_place(identity, candidate.T_cloud_map, center);

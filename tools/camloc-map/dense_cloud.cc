@@ -25,8 +25,8 @@ bool is_at_edge(const RgbdCamera& camera, ImageView<std::uint16_t> depth, int x,
 
 }  // namespace
 
-void add_depth_image(const RgbdCamera& camera, ImageView<std::uint16_t> depth, const Rigid3& T_world_camera, const DenseCloudOptions& options,
-                     CloudAccumulator* cloud) {
+void add_depth_image(const RgbdCamera& camera, ImageView<std::uint16_t> depth, const Rigid3& T_world_camera,
+                     const DenseCloudOptions& options, CloudAccumulator* cloud) {
   const Rigid3 T_world_depth = camera.is_depth_registered ? T_world_camera : T_world_camera * camera.T_color_depth;
   const Intrinsics& lens = camera.is_depth_registered ? camera.color : camera.depth;
   for (int y = options.pixel_step / 2; y < depth.height; y += options.pixel_step) {
@@ -39,7 +39,8 @@ void add_depth_image(const RgbdCamera& camera, ImageView<std::uint16_t> depth, c
   }
 }
 
-Result<PointCloud> fuse_dense_cloud(const PosedFrames& frames, const RgbdCamera& camera, const DenseCloudOptions& options, const FrameProgress& progress) {
+Result<PointCloud> fuse_dense_cloud(const PosedFrames& frames, const RgbdCamera& camera, const DenseCloudOptions& options,
+                                    const FrameProgress& progress) {
   auto source = open_frame_source(frames.url);
   if (!source.is_ok()) return source.status();
   CloudAccumulator accumulator({options.voxel_m, 1, options.min_points});
@@ -48,16 +49,19 @@ Result<PointCloud> fuse_dense_cloud(const PosedFrames& frames, const RgbdCamera&
     const Status status = source.value()->next(&buffer, std::chrono::milliseconds(1000));
     if (status.code() == ErrorCode::kEnd) break;
     if (status.code() == ErrorCode::kTimeout) continue;
-    if (progress && !progress(++done, frames.T_map_camera_of_frame.size())) return {ErrorCode::kIo, "interrupted while fusing depth images"};
+    if (progress && !progress(++done, frames.T_map_camera_of_frame.size()))
+      return {ErrorCode::kIo, "interrupted while fusing depth images"};
     if (status.code() == ErrorCode::kCorrupt) continue;
     if (!status.is_ok()) return status;
     const auto pose = frames.T_map_camera_of_frame.find(buffer.sequence);
     const Intrinsics& lens = camera.is_depth_registered ? camera.color : camera.depth;
-    if (pose == frames.T_map_camera_of_frame.end() || buffer.depth.width != lens.width || buffer.depth.height != lens.height) continue;
+    if (pose == frames.T_map_camera_of_frame.end() || buffer.depth.width != lens.width || buffer.depth.height != lens.height)
+      continue;
     add_depth_image(camera, buffer.depth.view(), pose->second, options, &accumulator);
   }
   PointCloud cloud = accumulator.finish();
-  if (cloud.points_m.empty()) return {ErrorCode::kInvalid, frames.folder + ": its frames give no surface; check depth images and --camera"};
+  if (cloud.points_m.empty())
+    return {ErrorCode::kInvalid, frames.folder + ": its frames give no surface; check depth images and --camera"};
   return cloud;
 }
 

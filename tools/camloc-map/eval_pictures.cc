@@ -12,12 +12,13 @@
 namespace camloc::map_tool {
 namespace {
 
-constexpr Rgb kPaper{252, 252, 250}, kInk{40, 40, 46}, kGrid{222, 222, 218}, kBar{70, 120, 170}, kMean{200, 80, 30}, kMedian{20, 20, 24}, kP95{130, 60, 150};
+constexpr Rgb kPaper{252, 252, 250}, kInk{40, 40, 46}, kGrid{222, 222, 218}, kBar{70, 120, 170}, kMean{200, 80, 30},
+    kMedian{20, 20, 24}, kP95{130, 60, 150};
 constexpr Rgb kNight{18, 19, 22}, kLight{228, 228, 232}, kCamera{255, 255, 255}, kOutside{215, 95, 175};
 constexpr int kWidth = 1400, kMinHeight = 360, kMaxHeight = 1400, kMargin = 50, kHeader = 75, kFooter = 45;
-constexpr double kNearCosine = 0.866;   // 30 degrees
+constexpr double kNearCosine = 0.866;  // 30 degrees
 constexpr double kFullScaleM = 0.10;
-constexpr std::size_t kFirstRampEntry = 70;   // darker ones cannot be told from the background
+constexpr std::size_t kFirstRampEntry = 70;  // darker ones cannot be told from the background
 
 std::string format_cm(const char* name, double metres) {
   char text[48];
@@ -48,13 +49,15 @@ Eigen::Vector3d up_of(const Evaluation& evaluation, const PointCloud& cloud) {
 /// The height that cuts ceilings off: a little above most cameras.
 double eye_level(const Evaluation& evaluation, const Eigen::Vector3d& up) {
   std::vector<double> heights;
-  for (const Eigen::Vector3d& p : evaluation.keyframes_m.empty() ? evaluation.landmarks_m : evaluation.keyframes_m) heights.push_back(up.dot(p));
+  for (const Eigen::Vector3d& p : evaluation.keyframes_m.empty() ? evaluation.landmarks_m : evaluation.keyframes_m)
+    heights.push_back(up.dot(p));
   std::sort(heights.begin(), heights.end());
   return heights.empty() ? 1e9 : heights[heights.size() * 9 / 10] + 0.3;
 }
 
 /// Grey by height, so that furniture stands out from the floor; thinned to what a picture can show.
-void add_cloud(const Evaluation& evaluation, const PointCloud& cloud, const Viewpoint& viewpoint, const Eigen::Vector3d& up, double cut_height, PointRaster* raster) {
+void add_cloud(const Evaluation& evaluation, const PointCloud& cloud, const Viewpoint& viewpoint, const Eigen::Vector3d& up,
+               double cut_height, PointRaster* raster) {
   constexpr std::size_t kMaxPoints = 3000000;
   Eigen::Vector3d low(1e18, 1e18, 1e18), high = -low;
   for (const Eigen::Vector3d& p : evaluation.landmarks_m) low = low.cwiseMin(p), high = high.cwiseMax(p);
@@ -94,7 +97,9 @@ void add_keyframes(const Evaluation& evaluation, const Viewpoint& viewpoint, Poi
   std::vector<Eigen::Vector2d> drawn;
   for (const Rigid3& T : evaluation.T_cloud_keyframe) {
     const Eigen::Vector2d pixel = viewpoint.px_per_m * (viewpoint.T_view_world * T.translation).head<2>();
-    if (std::any_of(drawn.begin(), drawn.end(), [&](const Eigen::Vector2d& other) { return (other - pixel).norm() < kSpacingPx; })) continue;
+    if (std::any_of(drawn.begin(), drawn.end(),
+                    [&](const Eigen::Vector2d& other) { return (other - pixel).norm() < kSpacingPx; }))
+      continue;
     drawn.push_back(pixel);
     raster->add_camera(viewpoint, T, std::max(0.1, 12 / viewpoint.px_per_m), kCamera);
   }
@@ -126,7 +131,8 @@ ColorImage draw_histogram(const CloudDistances& distances, const std::string& ti
   PointRaster raster(kWidthPx, kTop + kPlotHeight + 80, kPaper);
   std::vector<std::size_t> bins(kBins + 1);
   for (const float distance : distances.point_m) {
-    ++bins[static_cast<std::size_t>(std::clamp(static_cast<double>(distance) / kFullScaleM * kBins, 0.0, static_cast<double>(kBins)))];
+    ++bins[static_cast<std::size_t>(
+        std::clamp(static_cast<double>(distance) / kFullScaleM * kBins, 0.0, static_cast<double>(kBins)))];
   }
   const double total = std::max<double>(1, static_cast<double>(distances.point_m.size()));
   const double highest = std::max(0.01, static_cast<double>(*std::max_element(bins.begin(), bins.end())) / total);
@@ -148,12 +154,17 @@ ColorImage draw_histogram(const CloudDistances& distances, const std::string& ti
   raster.add_rectangle(kLeft, base, (kBins + 4) * kBinPx, 2, kInk);
   for (int cm = 0; cm <= 10; ++cm) raster.add_text(kLeft + 4 * cm * kBinPx - 5, base + 22, std::to_string(cm), 11, kInk);
   raster.add_text(kLeft + (kBins + 2) * kBinPx - 8, base + 22, "more", 11, kInk);
-  raster.add_text(kLeft + kBins * kBinPx / 2 - 170, base + 52, "distance from landmark to nearest point of the cloud [cm]", 12, kInk);
+  raster.add_text(kLeft + kBins * kBinPx / 2 - 170, base + 52, "distance from landmark to nearest point of the cloud [cm]", 12,
+                  kInk);
   raster.add_text(kLeft, 32, title, 15, kInk);
   constexpr int kKeyU = kLeft + 30 * kBinPx;
   int row = kTop + 22;
   const DistanceStatistics& d = distances.point;
-  const struct { const char* name; double value; Rgb color; } marks[] = {{"median", d.median_m, kMedian}, {"mean", d.mean_m, kMean}, {"p95", d.p95_m, kP95}};
+  const struct {
+    const char* name;
+    double value;
+    Rgb color;
+  } marks[] = {{"median", d.median_m, kMedian}, {"mean", d.mean_m, kMean}, {"p95", d.p95_m, kP95}};
   for (const auto& mark : marks) {
     const int u = kLeft + static_cast<int>(std::min(1.02, mark.value / kFullScaleM) * kBins * kBinPx);
     raster.add_rectangle(u - 1, kTop, 2, kPlotHeight, mark.color);
@@ -163,7 +174,8 @@ ColorImage draw_histogram(const CloudDistances& distances, const std::string& ti
   }
   char note[160];
   std::snprintf(note, sizeof note, "%llu landmarks near the cloud, %.1f %% within 3 cm, %.1f %% within 5 cm; %llu outside of it",
-                static_cast<unsigned long long>(d.count), 100 * d.share_3cm, 100 * d.share_5cm, static_cast<unsigned long long>(distances.num_outside));
+                static_cast<unsigned long long>(d.count), 100 * d.share_3cm, 100 * d.share_5cm,
+                static_cast<unsigned long long>(distances.num_outside));
   raster.add_text(kLeft, 60, note, 12, kInk);
   return raster.image();
 }

@@ -17,10 +17,11 @@ namespace camloc::map_tool {
 /// Landmark-to-point distances in steps of 2.5 mm up to 10 cm and the rest, with mean, median and 95th percentile.
 [[nodiscard]] ColorImage draw_histogram(const CloudDistances& distances, const std::string& title);
 
-/// Landmarks by distance (dark blue: on the cloud, yellow: 10 cm and more) over the cloud in grey, with the keyframes. From above, where
-/// what is over the cameras' heads is cut off as in a floor plan, or from the side. Up is where the cameras' up is on average,
-/// corrected to what is within 30 degrees: the cloud's z axis, or else a direction across walls and floors.
+/// Landmarks by distance (dark blue: on the cloud, yellow: 10 cm and more) over the cloud in grey, with the keyframes. From
+/// above, where what is over the cameras' heads is cut off as in a floor plan, or from the side. Up is where the cameras' up is
+/// on average, corrected to what is within 30 degrees: the cloud's z axis, or else a direction across walls and floors.
 enum class CloudView { kTop, kSide };
-[[nodiscard]] ColorImage draw_cloud_view(const Evaluation& evaluation, const PointCloud& cloud, CloudView view, const std::string& title);
+[[nodiscard]] ColorImage draw_cloud_view(const Evaluation& evaluation, const PointCloud& cloud, CloudView view,
+                                         const std::string& title);
 
 }  // namespace camloc::map_tool

@@ -13,11 +13,11 @@ namespace camloc::map_tool {
 
 struct EvalSummary {
   std::string map_path, cloud_name;
-  std::uint64_t num_read = 0, num_invalid = 0, num_points = 0;   ///< of the cloud
+  std::uint64_t num_read = 0, num_invalid = 0, num_points = 0;  ///< of the cloud
   double voxel_m = 0;
   std::uint32_t min_observations = 0;
   Evaluation evaluation;
-  std::vector<std::string> files;   ///< that were written
+  std::vector<std::string> files;  ///< that were written
   double seconds = 0;
 };
 

@@ -14,11 +14,11 @@
 namespace camloc::map_tool {
 namespace {
 
-constexpr std::size_t kMaxFinalPoints = 50000;     // of the last registration; more change nothing
+constexpr std::size_t kMaxFinalPoints = 50000;  // of the last registration; more change nothing
 constexpr double kScaleTolerance = 0.01;
-constexpr std::size_t kMaxSearchPoints = 3000;     // for each start of a search
+constexpr std::size_t kMaxSearchPoints = 3000;  // for each start of a search
 constexpr double kSearchDistanceM = 1.5, kSearchTrim = 0.8;
-constexpr double kPoseLeverM = 1.0;                // what a rotation weighs against a position between two trajectories
+constexpr double kPoseLeverM = 1.0;  // what a rotation weighs against a position between two trajectories
 
 [[gnu::format(printf, 1, 2)]] std::string text_of(const char* format, ...) {
   char text[512];
@@ -30,7 +30,7 @@ constexpr double kPoseLeverM = 1.0;                // what a rotation weighs aga
 }
 
 struct MapPoints {
-  std::vector<Eigen::Vector3d> landmarks;   ///< with enough observations
+  std::vector<Eigen::Vector3d> landmarks;  ///< with enough observations
   std::vector<Rigid3> T_map_keyframe;
 };
 
@@ -49,8 +49,8 @@ MapPoints points_of(const MapView& map, std::uint32_t min_observations) {
 Status check_points(const MapView& map, const MapPoints& points, std::uint32_t min_observations) {
   if (map.landmarks().empty()) return {ErrorCode::kInvalid, map.info().path + ": has no landmarks, there is nothing to evaluate"};
   if (!points.landmarks.empty()) return Status::ok();
-  return {ErrorCode::kInvalid, text_of("%s: none of its %zu landmarks was seen at least %u times; lower --min-observations", map.info().path.c_str(),
-                                       map.landmarks().size(), min_observations)};
+  return {ErrorCode::kInvalid, text_of("%s: none of its %zu landmarks was seen at least %u times; lower --min-observations",
+                                       map.info().path.c_str(), map.landmarks().size(), min_observations)};
 }
 
 Eigen::Vector3d extent_of(const std::vector<Eigen::Vector3d>& points) {
@@ -65,7 +65,10 @@ Status check_unit(const MapPoints& points, const PointCloud& cloud) {
   const auto bounds = cloud.bounds_m();
   const double cloud_m = (bounds[1] - bounds[0]).norm(), map_m = extent_of(points.landmarks).norm();
   if (!(cloud_m > 300 * map_m && cloud_m < 5000 * map_m && cloud_m > 1000)) return Status::ok();
-  return {ErrorCode::kInvalid, text_of("the cloud is %.0f m wide and the map %.1f m: the cloud seems to be in millimetres; say so with --lidar-unit mm", cloud_m, map_m)};
+  return {
+      ErrorCode::kInvalid,
+      text_of("the cloud is %.0f m wide and the map %.1f m: the cloud seems to be in millimetres; say so with --lidar-unit mm",
+              cloud_m, map_m)};
 }
 
 std::vector<PointPair> pairs_of(const std::vector<ControlPair>& controls, const Eigen::Vector3d& origin_m) {
@@ -74,7 +77,8 @@ std::vector<PointPair> pairs_of(const std::vector<ControlPair>& controls, const 
   return pairs;
 }
 
-/// Camera positions; `has_axes`: and, with a lever arm, viewing directions, so that a camera that only turned can be aligned, too.
+/// Camera positions; `has_axes`: and, with a lever arm, viewing directions, so that a camera that only turned can be aligned,
+/// too.
 std::vector<PointPair> pairs_of(const std::vector<PosePair>& poses, const Eigen::Vector3d& origin_m, bool has_axes) {
   std::vector<PointPair> pairs;
   for (const PosePair& pose : poses) {
@@ -90,7 +94,8 @@ std::vector<PointPair> pairs_of(const std::vector<PosePair>& poses, const Eigen:
 Result<Rigid3> align(const std::vector<PointPair>& pairs, const char* what) {
   const Alignment aligned = align_rigid(pairs);
   if (aligned.rank == AlignmentRank::kFull) return aligned.T_a_b;
-  return {ErrorCode::kInvalid, std::string(what) + ": all lie on one line, which leaves the rotation about it open; add one aside"};
+  return {ErrorCode::kInvalid,
+          std::string(what) + ": all lie on one line, which leaves the rotation about it open; add one aside"};
 }
 
 AlignStart choose_start(const EvaluationInput& input, AlignStart wish) {
@@ -106,7 +111,8 @@ bool is_same_place(const Rigid3& a, const Rigid3& b, const std::vector<Eigen::Ve
 }
 
 /// Every coarse start is refined; what fits best wins.
-Result<Rigid3> search_start(const EvaluationInput& input, const MapPoints& points, const EvaluationOptions& options, CloudIndex* cloud, SearchOutcome* outcome) {
+Result<Rigid3> search_start(const EvaluationInput& input, const MapPoints& points, const EvaluationOptions& options,
+                            CloudIndex* cloud, SearchOutcome* outcome) {
   const auto starts = find_coarse_starts(points.landmarks, input.cloud->points_m, input.cloud->origin_m);
   if (!starts.is_ok()) return starts.status();
   RegistrationOptions registration;
@@ -115,43 +121,58 @@ Result<Rigid3> search_start(const EvaluationInput& input, const MapPoints& point
   registration.start_distance_m = std::max(kSearchDistanceM, options.max_distance_m);
   registration.max_points = kMaxSearchPoints;
   std::vector<Eigen::Vector3d> some;
-  for (std::size_t i = 0; i < points.landmarks.size(); i += points.landmarks.size() / kMaxSearchPoints + 1) some.push_back(points.landmarks[i]);
-  std::vector<CoarseStart> refined;   // score_m is the capped mean distance from here on
+  for (std::size_t i = 0; i < points.landmarks.size(); i += points.landmarks.size() / kMaxSearchPoints + 1)
+    some.push_back(points.landmarks[i]);
+  std::vector<CoarseStart> refined;  // score_m is the capped mean distance from here on
   for (const CoarseStart& start : starts.value()) {
     const auto result = register_points(some, cloud, {1, start.T_cloud_map}, registration);
     if (!result.is_ok()) continue;
     const Rigid3& T_cloud_map = result.value().T_cloud_map.rigid;
     refined.push_back({T_cloud_map, capped_mean_distance(some, *cloud, T_cloud_map, options.max_distance_m), start.is_identity});
   }
-  if (refined.empty()) return {ErrorCode::kNotFound, "no place was found where the map fits into the cloud; is it the same site? Control points (--points) would help"};
+  if (refined.empty())
+    return {ErrorCode::kNotFound,
+            "no place was found where the map fits into the cloud; is it the same site? Control points (--points) would help"};
   // A map that fits in its own frame is meant to be there.
   const auto handicapped_m = [](const CoarseStart& start) { return start.score_m * (start.is_identity ? 0.9 : 1); };
-  const CoarseStart best =
-      *std::min_element(refined.begin(), refined.end(), [&](const CoarseStart& a, const CoarseStart& b) { return handicapped_m(a) < handicapped_m(b); });
+  const CoarseStart best = *std::min_element(refined.begin(), refined.end(), [&](const CoarseStart& a, const CoarseStart& b) {
+    return handicapped_m(a) < handicapped_m(b);
+  });
   *outcome = {best.score_m, options.max_distance_m, best.is_identity, starts.value().size()};
   for (const CoarseStart& other : refined) {
-    if (!is_same_place(other.T_cloud_map, best.T_cloud_map, some)) outcome->rival_score_m = std::min(outcome->rival_score_m, other.score_m);
+    if (!is_same_place(other.T_cloud_map, best.T_cloud_map, some))
+      outcome->rival_score_m = std::min(outcome->rival_score_m, other.score_m);
   }
   return best.is_identity ? Rigid3{Eigen::Quaterniond::Identity(), -input.cloud->origin_m} : best.T_cloud_map;
 }
 
 /// T_cloud_map relative to the cloud's origin.
-Result<Rigid3> find_start(const EvaluationInput& input, const MapPoints& points, const EvaluationOptions& options, CloudIndex* cloud, Evaluation* result) {
+Result<Rigid3> find_start(const EvaluationInput& input, const MapPoints& points, const EvaluationOptions& options,
+                          CloudIndex* cloud, Evaluation* result) {
   const Eigen::Vector3d& origin_m = input.cloud->origin_m;
-  const auto relative = [&](Rigid3 T) { T.translation -= origin_m; return T; };
+  const auto relative = [&](Rigid3 T) {
+    T.translation -= origin_m;
+    return T;
+  };
   switch (result->start) {
     case AlignStart::kPoints: {
       if (input.points.empty()) return {ErrorCode::kInvalid, "--align points needs control points: --points FILE"};
       return align(pairs_of(input.points, origin_m), "control points");
     }
     case AlignStart::kTrajectory: {
-      if (input.poses.empty()) return {ErrorCode::kInvalid, "--align trajectory needs --trajectory FILE, and poses to compare it with: --reference-trajectory FILE or --reference-sequence DIR"};
+      if (input.poses.empty())
+        return {ErrorCode::kInvalid,
+                "--align trajectory needs --trajectory FILE, and poses to compare it with: --reference-trajectory FILE or "
+                "--reference-sequence DIR"};
       return align(pairs_of(input.poses, origin_m, true), "trajectory");
     }
     case AlignStart::kDatum:
-      if (!input.map->info().wcs) return {ErrorCode::kInvalid, "--align datum: " + input.map->info().path + " has no datum; camloc map georef gives it one"};
+      if (!input.map->info().wcs)
+        return {ErrorCode::kInvalid,
+                "--align datum: " + input.map->info().path + " has no datum; camloc map georef gives it one"};
       return relative(input.map->info().wcs->T_wcs_map);
-    case AlignStart::kAuto: case AlignStart::kSearch: {
+    case AlignStart::kAuto:
+    case AlignStart::kSearch: {
       result->search.emplace();
       return search_start(input, points, options, cloud, &*result->search);
     }
@@ -166,7 +187,8 @@ double start_distance_of(AlignStart start, const EvaluationOptions& options) {
 }
 
 /// Trimmed ICP on a part of the landmarks, then on more of them.
-Result<Registration> refine(const MapPoints& points, const Rigid3& start, const EvaluationOptions& options, AlignStart kind, CloudIndex* cloud) {
+Result<Registration> refine(const MapPoints& points, const Rigid3& start, const EvaluationOptions& options, AlignStart kind,
+                            CloudIndex* cloud) {
   RegistrationOptions registration;
   registration.trim = options.trim;
   registration.max_distance_m = options.max_distance_m;
@@ -179,8 +201,8 @@ Result<Registration> refine(const MapPoints& points, const Rigid3& start, const 
   return register_points(points.landmarks, cloud, coarse.value().T_cloud_map, registration);
 }
 
-void check_scale(const EvaluationInput& input, const MapPoints& points, const Rigid3& T_cloud_map, const EvaluationOptions& options, CloudIndex* cloud,
-                 Evaluation* result) {
+void check_scale(const EvaluationInput& input, const MapPoints& points, const Rigid3& T_cloud_map,
+                 const EvaluationOptions& options, CloudIndex* cloud, Evaluation* result) {
   RegistrationOptions registration;
   registration.has_scale = true;
   registration.trim = options.trim;
@@ -192,7 +214,8 @@ void check_scale(const EvaluationInput& input, const MapPoints& points, const Ri
   }
   const auto scale_of = [](const std::vector<PointPair>& pairs) -> std::optional<double> {
     const Alignment aligned = align_similarity(pairs);
-    return aligned.rank == AlignmentRank::kNothing || aligned.rank == AlignmentRank::kPosition ? std::nullopt : std::optional(aligned.scale);
+    return aligned.rank == AlignmentRank::kNothing || aligned.rank == AlignmentRank::kPosition ? std::nullopt
+                                                                                               : std::optional(aligned.scale);
   };
   result->points_scale = scale_of(pairs_of(input.points, input.cloud->origin_m));
   result->poses_scale = scale_of(pairs_of(input.poses, input.cloud->origin_m, false));
@@ -211,15 +234,18 @@ void measure_residuals(const EvaluationInput& input, const Rigid3& T_cloud_map, 
 void warn_about_scale(const Evaluation& e, std::vector<std::string>* warnings) {
   const auto warn = [&](const std::optional<double>& scale, const char* how) {
     if (!scale || std::abs(*scale - 1) <= kScaleTolerance) return;
-    warnings->push_back(text_of("SCALE: by %s the map would have to be multiplied by %.4f to fit the cloud; expected 1 +- %.2f. The distances above deceive", how,
-                                *scale, kScaleTolerance));
+    warnings->push_back(
+        text_of("SCALE: by %s the map would have to be multiplied by %.4f to fit the cloud; expected 1 +- %.2f. The distances "
+                "above deceive",
+                how, *scale, kScaleTolerance));
   };
   warn(e.scale, "ICP");
   warn(e.points_scale, "the control points");
   warn(e.poses_scale, "the camera positions");
   if (const double ratio = e.distances.volume_ratio(); ratio < 0.2 || ratio > 5) {
-    warnings->push_back(text_of("VOLUME: the map's box is %.3g times the cloud's; either %s, or its scale is wrong. Control points would tell", ratio,
-                                ratio < 1 ? "it holds a small part of the scan" : "the scan holds a small part of the map"));
+    warnings->push_back(
+        text_of("VOLUME: the map's box is %.3g times the cloud's; either %s, or its scale is wrong. Control points would tell",
+                ratio, ratio < 1 ? "it holds a small part of the scan" : "the scan holds a small part of the map"));
   }
 }
 
@@ -230,26 +256,36 @@ void warn_about_points(const Evaluation& e, std::vector<std::string>* warnings) 
   const auto worst = std::max_element(sizes.begin(), sizes.end());
   const PointResidual& r = e.residuals[static_cast<std::size_t>(worst - sizes.begin())];
   if (*worst > std::max(0.05, 5 * r.sigma_m)) {
-    warnings->push_back(text_of("POINTS: control point %s is off by %.3f m; check it for a typo or swapped axes", r.name.c_str(), *worst));
+    warnings->push_back(
+        text_of("POINTS: control point %s is off by %.3f m; check it for a typo or swapped axes", r.name.c_str(), *worst));
   }
 }
 
 void warn_about_alignment(const Evaluation& e, std::vector<std::string>* warnings) {
   if (e.search && !e.search->is_identity && e.search->rival_score_m < 1.25 * e.search->score_m) {
-    warnings->push_back(text_of("START: found by search, and the building looks nearly as good from elsewhere (%.3f and %.3f m); give control points to be sure",
-                                e.search->score_m, e.search->rival_score_m));
+    warnings->push_back(
+        text_of("START: found by search, and the building looks nearly as good from elsewhere (%.3f and %.3f m); give control "
+                "points to be sure",
+                e.search->score_m, e.search->rival_score_m));
   }
-  const double share_outside = static_cast<double>(e.distances.num_outside) / static_cast<double>(std::max<std::uint64_t>(1, e.num_used));
+  const double share_outside =
+      static_cast<double>(e.distances.num_outside) / static_cast<double>(std::max<std::uint64_t>(1, e.num_used));
   if (share_outside > 0.2) {
-    warnings->push_back(text_of("OVERLAP: %.0f %% of the landmarks have no point of the cloud near; the alignment is wrong, or the scan lacks rooms", 100 * share_outside));
+    warnings->push_back(text_of(
+        "OVERLAP: %.0f %% of the landmarks have no point of the cloud near; the alignment is wrong, or the scan lacks rooms",
+        100 * share_outside));
   }
   if (!e.registration) return;
   if (e.start == AlignStart::kPoints && e.moved_m > 0.1) {
-    warnings->push_back(text_of("POINTS: the surfaces put the map %.2f m away from where the control points put it; which of the two is wrong?", e.moved_m));
+    warnings->push_back(
+        text_of("POINTS: the surfaces put the map %.2f m away from where the control points put it; which of the two is wrong?",
+                e.moved_m));
   }
   if (e.registration->weakest_share < 0.01) {
     const Eigen::Vector3d& d = e.registration->weakest_direction;
-    warnings->push_back(text_of("SLIDING: nearly no surface stands across (%.2f, %.2f, %.2f); the map may slide along there unnoticed", d.x(), d.y(), d.z()));
+    warnings->push_back(
+        text_of("SLIDING: nearly no surface stands across (%.2f, %.2f, %.2f); the map may slide along there unnoticed", d.x(),
+                d.y(), d.z()));
   }
   if (!e.registration->is_converged) warnings->push_back("ICP: did not settle; the distances may improve with another start");
 }
@@ -268,7 +304,8 @@ const char* describe(AlignStart start) {
   return "";
 }
 
-Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOptions& options, const std::function<bool(const std::string&)>& say) {
+Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOptions& options,
+                                const std::function<bool(const std::string&)>& say) {
   const auto is_stopped = [&](const char* stage) { return say && !say(stage); };
   const Status stopped(ErrorCode::kIo, "interrupted");
   const MapPoints points = points_of(*input.map, options.min_observations);
@@ -290,7 +327,8 @@ Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOp
     if (is_stopped("aligning ...")) return stopped;
     const auto refined = refine(points, T_cloud_map, options, result.start, &cloud);
     if (!refined.is_ok()) {
-      return {ErrorCode::kNotFound, "map and cloud do not overlap (start: " + std::string(describe(result.start)) + "): " + refined.status().message()};
+      return {ErrorCode::kNotFound,
+              "map and cloud do not overlap (start: " + std::string(describe(result.start)) + "): " + refined.status().message()};
     }
     result.registration = refined.value();
     T_cloud_map = refined.value().T_cloud_map.rigid;
@@ -308,11 +346,14 @@ Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOp
   distance.max_distance_m = result.max_distance_m = options.max_distance_m;
   result.distances = measure_distances(result.landmarks_m, result.keyframes_m, &cloud, distance);
   measure_residuals(input, T_cloud_map, &result);
-  const auto absolute = [&](Rigid3 T) { T.translation += input.cloud->origin_m; return T; };
+  const auto absolute = [&](Rigid3 T) {
+    T.translation += input.cloud->origin_m;
+    return T;
+  };
   result.T_cloud_map_start = absolute(start.value());
   result.T_cloud_map = absolute(T_cloud_map);
-  const Eigen::Vector3d center =
-      std::accumulate(points.landmarks.begin(), points.landmarks.end(), Eigen::Vector3d(0, 0, 0)) / static_cast<double>(points.landmarks.size());
+  const Eigen::Vector3d center = std::accumulate(points.landmarks.begin(), points.landmarks.end(), Eigen::Vector3d(0, 0, 0)) /
+                                 static_cast<double>(points.landmarks.size());
   result.moved_m = (T_cloud_map * center - start.value() * center).norm();
   result.moved_rad = rotation_distance_rad(T_cloud_map.rotation, start.value().rotation);
   warn_about_scale(result, &result.warnings);

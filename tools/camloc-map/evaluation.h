@@ -24,12 +24,12 @@ namespace camloc::map_tool {
 enum class AlignStart { kAuto, kPoints, kTrajectory, kDatum, kNone, kSearch };
 
 struct EvaluationOptions {
-  AlignStart start = AlignStart::kAuto;   ///< kAuto: the first of points, trajectory, datum that is there, else kSearch
+  AlignStart start = AlignStart::kAuto;  ///< kAuto: the first of points, trajectory, datum that is there, else kSearch
   bool has_icp = true;
   double trim = 0.9;
   double max_distance_m = 0.5;
   std::uint32_t min_observations = 2;
-  DistanceOptions distance;   ///< its max_distance_m is not used
+  DistanceOptions distance;  ///< its max_distance_m is not used
 };
 
 /// The same camera at the same moment, in the map and in the frame of the cloud.
@@ -40,38 +40,38 @@ struct PosePair {
 struct EvaluationInput {
   const MapView* map = nullptr;
   const PointCloud* cloud = nullptr;
-  std::vector<ControlPair> points;   ///< may be empty
-  std::vector<PosePair> poses;     ///< may be empty
+  std::vector<ControlPair> points;  ///< may be empty
+  std::vector<PosePair> poses;      ///< may be empty
 };
 
-/// How sure a search is: mean distances of the landmarks to the cloud, none counting more than max_distance_m, for the start that was
-/// chosen and for the best of the others.
+/// How sure a search is: mean distances of the landmarks to the cloud, none counting more than max_distance_m, for the start that
+/// was chosen and for the best of the others.
 struct SearchOutcome {
   double score_m = 0, rival_score_m = 0;
-  bool is_identity = false;   ///< the map's own frame taken as the cloud's
+  bool is_identity = false;  ///< the map's own frame taken as the cloud's
   std::size_t num_starts = 0;
 };
 
 struct PointResidual {
   std::string name;
   double sigma_m = 0;
-  Eigen::Vector3d aligned_m, final_m;   ///< map minus cloud, cloud's axes, aligned by the points, and at the end
+  Eigen::Vector3d aligned_m, final_m;  ///< map minus cloud, cloud's axes, aligned by the points, and at the end
 };
 
 struct Evaluation {
-  std::uint64_t num_landmarks = 0, num_used = 0, num_keyframes = 0;   ///< num_used: with enough observations
-  AlignStart start = AlignStart::kNone;           ///< the one that was used
-  std::optional<SearchOutcome> search;            ///< of kSearch
-  Rigid3 T_cloud_map_start, T_cloud_map;          ///< absolute: with the cloud's origin
-  std::optional<Registration> registration;       ///< nothing when there was no ICP
-  double moved_m = 0, moved_rad = 0;              ///< by ICP: the middle of the landmarks, and the rotation
-  std::optional<double> scale, sigma_scale;       ///< of a similarity by ICP: 1 expected
-  std::optional<double> points_scale, poses_scale;   ///< by Umeyama over control points, over camera positions
+  std::uint64_t num_landmarks = 0, num_used = 0, num_keyframes = 0;  ///< num_used: with enough observations
+  AlignStart start = AlignStart::kNone;                              ///< the one that was used
+  std::optional<SearchOutcome> search;                               ///< of kSearch
+  Rigid3 T_cloud_map_start, T_cloud_map;                             ///< absolute: with the cloud's origin
+  std::optional<Registration> registration;                          ///< nothing when there was no ICP
+  double moved_m = 0, moved_rad = 0;                                 ///< by ICP: the middle of the landmarks, and the rotation
+  std::optional<double> scale, sigma_scale;                          ///< of a similarity by ICP: 1 expected
+  std::optional<double> points_scale, poses_scale;                   ///< by Umeyama over control points, over camera positions
   std::vector<PointResidual> residuals;
-  double max_distance_m = 0.5;                    ///< farther from the cloud is outside of it
+  double max_distance_m = 0.5;  ///< farther from the cloud is outside of it
   CloudDistances distances;
   std::vector<std::string> warnings;
-  std::vector<Eigen::Vector3d> landmarks_m, keyframes_m;   ///< for pictures; relative to the cloud's origin, aligned
+  std::vector<Eigen::Vector3d> landmarks_m, keyframes_m;  ///< for pictures; relative to the cloud's origin, aligned
   std::vector<Rigid3> T_cloud_keyframe;
 };
 

@@ -9,9 +9,9 @@
 namespace camloc::map_tool {
 namespace {
 
-constexpr std::size_t kPointsForOrigin = 4096;     // their median: an invalid return at (0, 0, 0) may come first
+constexpr std::size_t kPointsForOrigin = 4096;  // their median: an invalid return at (0, 0, 0) may come first
 constexpr std::size_t kCompactAt = std::size_t{1} << 20;
-constexpr double kMaxCells = 1e9;                  // from the origin; fits 32 bits
+constexpr double kMaxCells = 1e9;  // from the origin; fits 32 bits
 constexpr double kMaxReachM = 1e7;
 constexpr std::size_t kMaxPercentileSamples = 200000;
 

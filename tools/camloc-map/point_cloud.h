@@ -23,9 +23,9 @@ struct PointCloud {
 };
 
 struct CloudOptions {
-  double voxel_m = 0.01;          ///< edge of the voxels; a point of a voxel is the mean of what fell into it
-  double unit_m = 1;              ///< metres per unit of what is added
-  std::uint32_t min_points = 1;   ///< voxels with fewer points are dropped
+  double voxel_m = 0.01;         ///< edge of the voxels; a point of a voxel is the mean of what fell into it
+  double unit_m = 1;             ///< metres per unit of what is added
+  std::uint32_t min_points = 1;  ///< voxels with fewer points are dropped
 };
 
 /// Takes points one by one. Memory: about twice what is kept, plus a few tens of megabytes. The same points in the same order
@@ -43,7 +43,7 @@ class CloudAccumulator {
   struct Voxel {
     std::array<std::int32_t, 3> cell;
     std::uint32_t count;
-    Eigen::Vector3f sum_m;   ///< of positions relative to the cell's lower corner
+    Eigen::Vector3f sum_m;  ///< of positions relative to the cell's lower corner
   };
 
   void start();
@@ -54,7 +54,7 @@ class CloudAccumulator {
   PointCloud cloud_;
   std::vector<Eigen::Vector3d> first_points_m_;  ///< until the origin is chosen
   bool is_started_ = false;
-  std::vector<Voxel> voxels_;                    ///< [0, num_compact_) sorted, one a cell; then as they came
+  std::vector<Voxel> voxels_;  ///< [0, num_compact_) sorted, one a cell; then as they came
   std::size_t num_compact_ = 0;
   std::size_t compact_at_ = 0;
 };

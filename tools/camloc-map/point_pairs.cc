@@ -20,7 +20,9 @@ Result<std::vector<ControlPair>> parse_point_pairs(std::string_view text, const 
   for (const TextLine& line : content_lines(text)) {
     const auto fields = split_fields(line.text);
     if (fields.size() != 7 && fields.size() != 8) {
-      return line_error(path, line.number, "has " + std::to_string(fields.size()) + " fields; 'name map_x map_y map_z cloud_x cloud_y cloud_z [sigma]' has 7 or 8");
+      return line_error(path, line.number,
+                        "has " + std::to_string(fields.size()) +
+                            " fields; 'name map_x map_y map_z cloud_x cloud_y cloud_z [sigma]' has 7 or 8");
     }
     ControlPair pair;
     pair.name = std::string(fields[0]);
@@ -35,10 +37,12 @@ Result<std::vector<ControlPair>> parse_point_pairs(std::string_view text, const 
     pair.sigma_m = numbers[6];
     if (!(pair.sigma_m > 0)) return line_error(path, line.number, "sigma must be positive, in metres");
     const auto same = [&](const ControlPair& other) { return other.name == pair.name; };
-    if (std::any_of(pairs.begin(), pairs.end(), same)) return line_error(path, line.number, "point " + in_quotes(pair.name) + " was given before");
+    if (std::any_of(pairs.begin(), pairs.end(), same))
+      return line_error(path, line.number, "point " + in_quotes(pair.name) + " was given before");
     pairs.push_back(std::move(pair));
   }
-  if (pairs.size() < 3) return {ErrorCode::kInvalid, path + ": has " + std::to_string(pairs.size()) + " control points; at least 3 are needed"};
+  if (pairs.size() < 3)
+    return {ErrorCode::kInvalid, path + ": has " + std::to_string(pairs.size()) + " control points; at least 3 are needed"};
   return pairs;
 }
 

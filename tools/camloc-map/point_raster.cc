@@ -13,14 +13,16 @@
 namespace camloc::map_tool {
 namespace {
 
-constexpr double kNearM = 0.05;           // perspective: what is closer to the eye is not drawn
-constexpr double kFontCapHeightPx = 21;   // of cv::FONT_HERSHEY_SIMPLEX at scale 1
-constexpr double kTextHeightPx = 11;      // of labels
-constexpr int kMaxLinePx = 1 << 14;       // cv::line takes 16.16 fixed point
+constexpr double kNearM = 0.05;          // perspective: what is closer to the eye is not drawn
+constexpr double kFontCapHeightPx = 21;  // of cv::FONT_HERSHEY_SIMPLEX at scale 1
+constexpr double kTextHeightPx = 11;     // of labels
+constexpr int kMaxLinePx = 1 << 14;      // cv::line takes 16.16 fixed point
 
 cv::Mat canvas_of(ColorImage* image) { return {image->height, image->width, CV_8UC3, image->pixels.data()}; }
 
-cv::Scalar scalar(Rgb color) { return {static_cast<double>(color[0]), static_cast<double>(color[1]), static_cast<double>(color[2])}; }
+cv::Scalar scalar(Rgb color) {
+  return {static_cast<double>(color[0]), static_cast<double>(color[1]), static_cast<double>(color[2])};
+}
 
 /// Pixel and distance along the view's axis, or nothing behind the eye.
 std::optional<Eigen::Vector3d> project(const Viewpoint& view, const Eigen::Vector3d& p_view) {
@@ -32,9 +34,7 @@ std::optional<Eigen::Vector3d> project(const Viewpoint& view, const Eigen::Vecto
   return Eigen::Vector3d(view.center_u + scale * p_view.x(), view.center_v + scale * p_view.y(), p_view.z());
 }
 
-bool is_drawable(const Eigen::Vector3d& pixel) {
-  return pixel.allFinite() && pixel.head<2>().cwiseAbs().maxCoeff() < kMaxLinePx;
-}
+bool is_drawable(const Eigen::Vector3d& pixel) { return pixel.allFinite() && pixel.head<2>().cwiseAbs().maxCoeff() < kMaxLinePx; }
 
 /// The shortest disc of pixel offsets that reads as a dot of `radius_px`.
 std::vector<Eigen::Vector2i> disc(double radius_px) {
@@ -92,7 +92,8 @@ PointRaster::PointRaster(int width, int height, Rgb background) {
   for (std::size_t i = 0; i < image_.pixels.size(); ++i) image_.pixels[i] = background[i % 3];
 }
 
-void PointRaster::add_points(const Viewpoint& view, std::span<const Eigen::Vector3d> points, std::span<const Rgb> colors, double radius_px) {
+void PointRaster::add_points(const Viewpoint& view, std::span<const Eigen::Vector3d> points, std::span<const Rgb> colors,
+                             double radius_px) {
   if (colors.empty()) return;
   const std::vector<Eigen::Vector2i> dot = disc(radius_px);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -119,7 +120,8 @@ void PointRaster::add_line(const Viewpoint& view, std::span<const Eigen::Vector3
     if (view.is_perspective) {  // cut at the near plane
       if (from.z() > to.z()) std::swap(from, to);
       if (!(to.z() > kNearM)) continue;
-      if (from.z() <= 1.01 * kNearM) from += (to - from) * std::min(1.0, (1.01 * kNearM - from.z()) / std::max(1e-9, to.z() - from.z()));
+      if (from.z() <= 1.01 * kNearM)
+        from += (to - from) * std::min(1.0, (1.01 * kNearM - from.z()) / std::max(1e-9, to.z() - from.z()));
     }
     const auto a = project(view, from), b = project(view, to);
     if (!a || !b || !is_drawable(*a) || !is_drawable(*b)) continue;
@@ -142,7 +144,8 @@ void PointRaster::add_camera(const Viewpoint& view, const Rigid3& T_world_camera
 
 void PointRaster::add_text(int u, int v, const std::string& text, double height_px, Rgb color) {
   std::string printable = text;
-  std::replace_if(printable.begin(), printable.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  std::replace_if(
+      printable.begin(), printable.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
   cv::Mat canvas = canvas_of(&image_);
   cv::putText(canvas, printable, {u, v}, cv::FONT_HERSHEY_SIMPLEX, height_px / kFontCapHeightPx, scalar(color),
               std::max(1, static_cast<int>(std::lround(height_px / 12))), cv::LINE_AA);
@@ -150,8 +153,9 @@ void PointRaster::add_text(int u, int v, const std::string& text, double height_
 
 int PointRaster::text_width(const std::string& text, double height_px) {
   int baseline = 0;
-  return cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, height_px / kFontCapHeightPx, std::max(1, static_cast<int>(std::lround(height_px / 12))),
-                         &baseline).width;
+  return cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, height_px / kFontCapHeightPx,
+                         std::max(1, static_cast<int>(std::lround(height_px / 12))), &baseline)
+      .width;
 }
 
 void PointRaster::add_rectangle(int u, int v, int width, int height, Rgb color) {
@@ -165,18 +169,25 @@ void PointRaster::add_scale_bar(const Viewpoint& view, int u, int v, Rgb color) 
   if (!(limit_m > 1e-6) || !(limit_m < 1e9)) return;
   const double decade = std::pow(10.0, std::floor(std::log10(limit_m)));
   double length_m = decade;
-  for (const double step : {2.0, 5.0}) if (step * decade <= limit_m) length_m = step * decade;
+  for (const double step : {2.0, 5.0})
+    if (step * decade <= limit_m) length_m = step * decade;
   const int length_px = static_cast<int>(std::lround(length_m * view.px_per_m));
   add_rectangle(u, v - 1, length_px, 3, color);
   add_rectangle(u, v - 5, 2, 11, color);
   add_rectangle(u + length_px - 2, v - 5, 2, 11, color);
   char label[32];
-  std::snprintf(label, sizeof label, length_m < 0.01 ? "%g mm" : length_m < 1 ? "%g cm" : "%g m",
-                length_m < 0.01 ? 1000 * length_m : length_m < 1 ? 100 * length_m : length_m);
+  std::snprintf(label, sizeof label,
+                length_m < 0.01 ? "%g mm"
+                : length_m < 1  ? "%g cm"
+                                : "%g m",
+                length_m < 0.01 ? 1000 * length_m
+                : length_m < 1  ? 100 * length_m
+                                : length_m);
   add_text(u + length_px + 8, v + static_cast<int>(kTextHeightPx) / 2, label, kTextHeightPx, color);
 }
 
-void PointRaster::add_legend(int u, int v, int width, const std::string& low, const std::string& high, std::span<const Rgb> ramp) {
+void PointRaster::add_legend(int u, int v, int width, const std::string& low, const std::string& high,
+                             std::span<const Rgb> ramp) {
   constexpr int kBarHeightPx = 12, kLabelDropPx = 17;
   if (ramp.empty() || width < 2) return;
   for (int x = 0; x < width; ++x) {
@@ -196,7 +207,8 @@ std::span<const Rgb> value_ramp() {
 }
 
 double lightness_of(Rgb color) {
-  const double y = 0.2126 * to_linear_light(color[0] / 255.0) + 0.7152 * to_linear_light(color[1] / 255.0) + 0.0722 * to_linear_light(color[2] / 255.0);
+  const double y = 0.2126 * to_linear_light(color[0] / 255.0) + 0.7152 * to_linear_light(color[1] / 255.0) +
+                   0.0722 * to_linear_light(color[2] / 255.0);
   return y > 216.0 / 24389 ? 116 * std::cbrt(y) - 16 : y * 24389 / 27;
 }
 

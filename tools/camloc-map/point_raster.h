@@ -21,10 +21,10 @@ using Rgb = std::array<std::uint8_t, 3>;
 
 /// What is drawn onto a picture: an axis-parallel view, or a pinhole camera.
 struct Viewpoint {
-  Rigid3 T_view_world;        ///< view axes: x right, y down, z away from the eye
+  Rigid3 T_view_world;  ///< view axes: x right, y down, z away from the eye
   bool is_perspective = false;
-  double px_per_m = 100;      ///< orthographic: pixels a metre; perspective: focal length in pixels
-  double center_u = 0, center_v = 0;   ///< pixel of the optical axis
+  double px_per_m = 100;              ///< orthographic: pixels a metre; perspective: focal length in pixels
+  double center_u = 0, center_v = 0;  ///< pixel of the optical axis
 };
 
 /// Seen along -up: the whole of `points` (1st to 99th percentile) fits into width x height with a margin. To the right goes
@@ -36,8 +36,8 @@ struct Viewpoint {
 [[nodiscard]] Viewpoint fit_side_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width, int height,
                                       int margin_px);
 /// Seen from above and aside in perspective.
-[[nodiscard]] Viewpoint fit_perspective_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width, int height,
-                                             int margin_px);
+[[nodiscard]] Viewpoint fit_perspective_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width,
+                                             int height, int margin_px);
 
 /// A picture with a depth buffer. What falls outside is cut off; coordinates that are not finite draw nothing.
 class PointRaster {

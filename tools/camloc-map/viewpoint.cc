@@ -24,7 +24,8 @@ struct Range {
 std::vector<Eigen::Vector3d> samples_of(std::span<const Eigen::Vector3d> points) {
   std::vector<Eigen::Vector3d> samples;
   const std::size_t step = points.size() / kMaxSamples + 1;
-  for (std::size_t i = 0; i < points.size(); i += step) if (points[i].allFinite()) samples.push_back(points[i]);
+  for (std::size_t i = 0; i < points.size(); i += step)
+    if (points[i].allFinite()) samples.push_back(points[i]);
   return samples;
 }
 
@@ -82,7 +83,8 @@ Eigen::Vector3d long_side(const std::vector<Eigen::Vector3d>& points, const Eige
 }
 
 /// The view with the given axes (rows: right, down, away) in which the points fill the picture.
-Viewpoint fit_parallel(const std::vector<Eigen::Vector3d>& points, const Eigen::Matrix3d& axes, int width, int height, int margin_px) {
+Viewpoint fit_parallel(const std::vector<Eigen::Vector3d>& points, const Eigen::Matrix3d& axes, int width, int height,
+                       int margin_px) {
   const Range u = range_along(points, axes.row(0)), v = range_along(points, axes.row(1));
   Viewpoint view;
   view.T_view_world.rotation = Eigen::Quaterniond(axes).normalized();
@@ -106,14 +108,16 @@ Viewpoint fit_top_view(std::span<const Eigen::Vector3d> points, const Eigen::Vec
   return fit_parallel(samples, axes_of(long_side(samples, unit_up), -unit_up), width, height, margin_px);
 }
 
-Viewpoint fit_side_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width, int height, int margin_px) {
+Viewpoint fit_side_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width, int height,
+                        int margin_px) {
   const std::vector<Eigen::Vector3d> samples = samples_of(points);
   const Eigen::Vector3d unit_up = up.normalized();
   const Eigen::Vector3d right = long_side(samples, unit_up);
   return fit_parallel(samples, axes_of(right, unit_up.cross(right)), width, height, margin_px);
 }
 
-Viewpoint fit_perspective_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width, int height, int margin_px) {
+Viewpoint fit_perspective_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width, int height,
+                               int margin_px) {
   constexpr double kTilt = 0.7, kTurn = 0.5, kDistances = 1.8;  // radians, radians, radii of the scene
   const std::vector<Eigen::Vector3d> samples = samples_of(points);
   const Eigen::Vector3d unit_up = up.normalized(), right = long_side(samples, unit_up), ahead = unit_up.cross(right);
@@ -134,7 +138,9 @@ Viewpoint fit_perspective_view(std::span<const Eigen::Vector3d> points, const Ei
     vs.push_back(p_view.y() / p_view.z());
   }
   const Range u = percentiles(&us), v = percentiles(&vs);
-  const auto fill = [&](int pixels, const Range& range) { return std::max(1, pixels - 2 * margin_px) / std::max(0.01, range.high - range.low); };
+  const auto fill = [&](int pixels, const Range& range) {
+    return std::max(1, pixels - 2 * margin_px) / std::max(0.01, range.high - range.low);
+  };
   view.px_per_m = std::min(fill(width, u), fill(height, v));
   view.center_u = 0.5 * (width - 1) - view.px_per_m * u.middle();
   view.center_v = 0.5 * (height - 1) - view.px_per_m * v.middle();

@@ -12,8 +12,8 @@ namespace camloc::map_tool {
 namespace {
 
 constexpr std::size_t kMaxNormals = 3000, kMaxGuesses = 300;
-constexpr double kSameCosine = 0.985;     // 10 degrees
-constexpr double kAcrossCosine = 0.17;    // 80 degrees
+constexpr double kSameCosine = 0.985;   // 10 degrees
+constexpr double kAcrossCosine = 0.17;  // 80 degrees
 constexpr int kRefinements = 5;
 
 std::vector<Eigen::Vector3d> normals_of(const std::vector<Eigen::Vector3d>& points_m) {
@@ -36,13 +36,14 @@ Eigen::Vector3d dominant(const std::vector<Eigen::Vector3d>& normals, const Eige
   const std::size_t step = normals.size() / kMaxGuesses + 1;
   for (std::size_t i = 0; i < normals.size(); i += step) {
     if (std::abs(normals[i].dot(across)) > kAcrossCosine) continue;
-    const auto count = static_cast<std::size_t>(
-        std::count_if(normals.begin(), normals.end(), [&](const Eigen::Vector3d& n) { return std::abs(n.dot(normals[i])) > kSameCosine; }));
+    const auto count = static_cast<std::size_t>(std::count_if(
+        normals.begin(), normals.end(), [&](const Eigen::Vector3d& n) { return std::abs(n.dot(normals[i])) > kSameCosine; }));
     if (count > best_count) best_count = count, best = normals[i];
   }
   for (int i = 0; i < kRefinements && best_count > 0; ++i) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const Eigen::Vector3d& n : normals) if (std::abs(n.dot(best)) > kSameCosine) sum += n.dot(best) > 0 ? n : Eigen::Vector3d(-n);
+    for (const Eigen::Vector3d& n : normals)
+      if (std::abs(n.dot(best)) > kSameCosine) sum += n.dot(best) > 0 ? n : Eigen::Vector3d(-n);
     best = sum.normalized();
   }
   return best;
