@@ -43,8 +43,8 @@ void draw_height_legend(const Scene& scene, PointRaster* raster, int width, int 
   char low[32], high[32];
   std::snprintf(low, sizeof low, "height %.1f m", std::round(10 * scene.low_m) / 10 + 0.0);  // no "-0.0"
   std::snprintf(high, sizeof high, "%.1f m", std::round(10 * scene.high_m) / 10 + 0.0);
-  raster->add_rectangle(width - 216, height - 44, 210, 42, kBackground);
-  raster->add_legend(width - 206, height - 40, 190, low, high, paper_ramp());
+  raster->add_rectangle(width - 256, height - 44, 250, 42, kBackground);
+  raster->add_legend(width - 246, height - 40, 230, low, high, paper_ramp());
 }
 
 void draw_walk(const Scene& scene, const Viewpoint& view, double line_px, PointRaster* raster) {
