@@ -118,6 +118,7 @@ std::uint64_t remove_outliers(const BundleOptions& bundle, const Extract& extrac
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     if (residuals[i].pixel_sigmas <= max_pixel_sigmas) continue;
     const BundleObservation& o = extract.problem.observations[i];
+    if (o.landmark >= extract.landmarks.size()) continue;
     map->remove_sighting(extract.landmarks[o.landmark], extract.keyframes[o.camera]);
     ++num_removed;
   }
@@ -150,16 +151,21 @@ MapFit measure_fit(const BundleOptions& bundle, const Extract& extract) {
   return fit;
 }
 
-// Priors name landmarks of the map; the problem needs its own numbers, and no fixed camera where they pin the gauge.
-void add_priors(std::span<const PointPrior> priors, Extract* extract) {
-  extract->problem.priors.clear();
-  for (const PointPrior& prior : priors) {
-    const auto place = std::lower_bound(extract->landmarks.begin(), extract->landmarks.end(), prior.landmark);
-    if (place == extract->landmarks.end() || *place != prior.landmark) continue;
-    PointPrior& added = extract->problem.priors.emplace_back(prior);
-    added.landmark = static_cast<std::uint32_t>(place - extract->landmarks.begin());
+// Control landmarks come after those of the map, so that their numbers mean nothing to write_back.
+void add_controls(std::span<const ControlLandmark> controls, Extract* extract) {
+  BundleProblem& problem = extract->problem;
+  for (const ControlLandmark& control : controls) {
+    const auto number = static_cast<std::uint32_t>(problem.landmarks_m.size());
+    const std::size_t before = problem.observations.size();
+    for (const ControlLandmark::Seen& seen : control.seen) {
+      const std::uint32_t camera = extract->camera_of_keyframe[seen.keyframe];
+      if (camera != kAbsent) problem.observations.push_back({camera, number, seen.x, seen.y, seen.depth_m, seen.sigma_px});
+    }
+    if (problem.observations.size() == before) continue;
+    problem.landmarks_m.push_back(control.position_m);
+    problem.priors.push_back({number, control.position_m, control.sigma_m});
   }
-  if (extract->problem.priors.size() >= 3) extract->problem.is_camera_fixed.assign(extract->keyframes.size(), 0);
+  if (problem.priors.size() >= 3) problem.is_camera_fixed.assign(extract->keyframes.size(), 0);
 }
 
 }  // namespace
@@ -176,13 +182,13 @@ BundleReport adjust_locally(const BundleOptions& bundle, const LocalAdjustmentOp
   return report;
 }
 
-MapFit adjust_globally(const BundleOptions& bundle, std::uint32_t segment, std::span<const PointPrior> priors, double max_pixel_sigmas,
-                       SlamMap* map, const BundleCallback& on_iteration) {
+MapFit adjust_globally(const BundleOptions& bundle, std::uint32_t segment, std::span<const ControlLandmark> controls,
+                       double max_pixel_sigmas, SlamMap* map, const BundleCallback& on_iteration) {
   std::uint64_t num_removed = 0;
   MapFit fit;
   for (int round = 0; round < 2; ++round) {
     Extract extract = extract_segment(segment, *map);
-    add_priors(priors, &extract);
+    add_controls(controls, &extract);
     const BundleReport report = adjust_bundle(bundle, &extract.problem, on_iteration);
     write_back(extract, map);
     fit = measure_fit(bundle, extract);

@@ -32,9 +32,22 @@ struct MapFit {
   double median_depth_m = 0;
 };
 
-/// Adjusts all keyframes of a segment twice, without the worst sightings the second time. Landmarks listed in `priors` are
-/// held at their positions; with three or more of them the first keyframe moves, too.
-MapFit adjust_globally(const BundleOptions& bundle, std::uint32_t segment, std::span<const PointPrior> priors, double max_pixel_sigmas,
-                       SlamMap* map, const BundleCallback& on_iteration = {});
+/// A surveyed point that keyframes see. It is no landmark of the map: nobody finds it by its looks.
+struct ControlLandmark {
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();   ///< as surveyed, in the frame of the segment
+  double sigma_m = 0.01;
+  struct Seen {
+    std::uint32_t keyframe = 0;
+    float x = 0, y = 0;       ///< normalized image coordinates
+    float depth_m = 0;        ///< 0 = none
+    float sigma_px = 1;
+  };
+  std::vector<Seen> seen;
+};
+
+/// Adjusts all keyframes of a segment twice, without the worst sightings the second time. Control landmarks hold the map where
+/// they were surveyed; with three or more of them the first keyframe moves, too.
+MapFit adjust_globally(const BundleOptions& bundle, std::uint32_t segment, std::span<const ControlLandmark> controls,
+                       double max_pixel_sigmas, SlamMap* map, const BundleCallback& on_iteration = {});
 
 }  // namespace camloc

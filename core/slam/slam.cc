@@ -55,7 +55,8 @@ ViewReport Slam::add_view(std::uint64_t frame, const ViewFeatures& view) {
   report.is_found_back = was_lost;
   report.num_inliers = found.num_inliers();
   tracker_.accept(view.stamp_ns, found.T_map_camera);
-  if (tracker_.wants_keyframe(view, found)) {
+  const bool is_required = std::binary_search(options_.required_keyframes.begin(), options_.required_keyframes.end(), frame);
+  if (is_required || tracker_.wants_keyframe(view, found)) {
     add_keyframe(frame, view, found, &report);
   } else {
     remember(frame, view, found, false);
@@ -174,14 +175,33 @@ void Slam::join_leftover_segments() {
 }
 
 SlamResult Slam::finish(const BundleCallback& on_iteration) {
-  SlamResult result;
   join_leftover_segments();
+  fits_.clear();
+  for (const SlamKeyframe& keyframe : map_.keyframes()) fits_[keyframe.segment];
+  for (auto& [segment, fit] : fits_) fit = adjust_globally(bundle_options(), segment, {}, options_.max_pixel_sigmas, &map_, on_iteration);
+  return result();
+}
+
+SlamResult Slam::adjust_to(std::span<const ControlLandmark> controls, const BundleCallback& on_iteration) {
+  if (!controls.empty() && !controls.front().seen.empty()) {
+    const std::uint32_t segment = map_.keyframe(controls.front().seen.front().keyframe).segment;
+    fits_[segment] = adjust_globally(bundle_options(), segment, controls, options_.max_pixel_sigmas, &map_, on_iteration);
+  }
+  return result();
+}
+
+std::optional<std::uint32_t> Slam::keyframe_of_frame(std::uint64_t frame) const {
+  const auto keyframes = map_.keyframes();
+  const auto place = std::lower_bound(keyframes.begin(), keyframes.end(), frame,
+                                      [](const SlamKeyframe& keyframe, std::uint64_t wanted) { return keyframe.frame < wanted; });
+  if (place == keyframes.end() || place->frame != frame) return std::nullopt;
+  return static_cast<std::uint32_t>(place - keyframes.begin());
+}
+
+SlamResult Slam::result() const {
+  SlamResult result;
   std::map<std::uint32_t, SlamResult::Segment> segments;
   for (const SlamKeyframe& keyframe : map_.keyframes()) ++segments[keyframe.segment].num_keyframes;
-  for (auto& [id, segment] : segments) {
-    segment.id = id;
-    segment.fit = adjust_globally(bundle_options(), id, {}, options_.max_pixel_sigmas, &map_, on_iteration);
-  }
   for (const TrackedView& view : tracked_) {
     SlamPose& pose = result.poses.emplace_back();
     pose.frame = view.frame;
@@ -192,7 +212,11 @@ SlamResult Slam::finish(const BundleCallback& on_iteration) {
     pose.is_keyframe = view.is_keyframe;
     ++segments[pose.segment].num_views;
   }
-  for (const auto& [id, segment] : segments) result.segments.push_back(segment);
+  for (auto& [id, segment] : segments) {
+    segment.id = id;
+    if (const auto fit = fits_.find(id); fit != fits_.end()) segment.fit = fit->second;
+    result.segments.push_back(segment);
+  }
   std::stable_sort(result.segments.begin(), result.segments.end(),
                    [](const SlamResult::Segment& a, const SlamResult::Segment& b) { return a.num_views > b.num_views; });
   return result;

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -37,6 +38,7 @@ struct SlamOptions {
   std::size_t num_fused_neighbours = 5;
   int max_lost_views = 10;             ///< after so many in a row a new segment begins
   std::uint32_t min_segment_features = 200;  ///< features with depth that a view needs to begin one
+  std::vector<std::uint64_t> required_keyframes;   ///< frames that become keyframes whatever they show, ascending
   double max_pixel_sigmas = 3.0;       ///< sightings farther off after the final adjustment are removed
 };
 
@@ -87,11 +89,14 @@ class Slam {
   ViewReport add_view(std::uint64_t frame, const ViewFeatures& view);
   [[nodiscard]] SlamCounts counts() const;
 
-  /// Landmark seen at or near a pixel of a tracked frame? For control points: see control point handling in tools.
   [[nodiscard]] const SlamMap& map() const { return map_; }
+  /// The keyframe that a frame has become, if it has.
+  [[nodiscard]] std::optional<std::uint32_t> keyframe_of_frame(std::uint64_t frame) const;
 
-  /// Adjusts everything. `on_iteration` may stop the adjustment early.
+  /// Adjusts everything; call it when all views are there. `on_iteration` may stop the adjustment early.
   [[nodiscard]] SlamResult finish(const BundleCallback& on_iteration = {});
+  /// Adjusts the segment of the first control landmark's keyframe once more, held by surveyed points; after finish().
+  [[nodiscard]] SlamResult adjust_to(std::span<const ControlLandmark> controls, const BundleCallback& on_iteration = {});
 
  private:
   /// A tracked view, relative to a keyframe, with what it saw: enough to refine it once the landmarks are final.
@@ -113,6 +118,7 @@ class Slam {
   void join_leftover_segments();
   void remember(std::uint64_t frame, const ViewFeatures& view, const Registration& tracked, bool is_keyframe);
   [[nodiscard]] BundleOptions bundle_options() const;
+  [[nodiscard]] SlamResult result() const;
   [[nodiscard]] Rigid3 final_pose(const TrackedView& view) const;
 
   RgbdCamera camera_;
@@ -123,6 +129,7 @@ class Slam {
   Tracker tracker_;
   LoopCloser loops_;
   std::vector<TrackedView> tracked_;
+  std::map<std::uint32_t, MapFit> fits_;   ///< of the segments, after finish()
   SlamCounts counts_;
   std::uint32_t segment_ = 0;
   int num_lost_in_a_row_ = 0;

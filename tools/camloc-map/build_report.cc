@@ -30,6 +30,19 @@ unsigned long long count(std::uint64_t value) { return value; }
 
 constexpr std::size_t kMaxSpotsShown = 8;
 
+std::string vertical_text(const BuildSummary& s) {
+  if (s.survey && s.survey->is_written) return "from control points";
+  const auto& up = s.slam->up;
+  if (!up) return "unknown (" + s.slam->up_problem + "); axes are those of the first camera";
+  char text[160];
+  if (up->source == GravitySource::kFloor) {
+    std::snprintf(text, sizeof text, "from the floor, %.2f m below the cameras; z is up", up->camera_height_m);
+  } else {
+    std::snprintf(text, sizeof text, "from the accelerometer, to %.1f deg; z is up", degrees(up->sigma_rad));
+  }
+  return text;
+}
+
 void append_slam(const BuildSummary& s, std::string* text) {
   const SlamSummary& slam = *s.slam;
   const SlamCounts& c = slam.counts;
@@ -39,7 +52,7 @@ void append_slam(const BuildSummary& s, std::string* text) {
   append(text, "%-22smedian %.2f px, 90 %% below %.2f px (%llu sightings)\n", "reprojection error", slam.fit.median_px, slam.fit.p90_px,
          count(slam.fit.num_sightings));
   append(text, "%-22smedian %.1f mm\n", "depth error", 1000 * slam.fit.median_depth_m);
-  append(text, "%-22s%s\n", "vertical", slam.up_source.empty() ? "unknown: no floor in view; z is that of the first camera" : slam.up_source.c_str());
+  append(text, "%-22s%s\n", "vertical", vertical_text(s).c_str());
 }
 
 void append_submaps(const BuildSummary& s, std::string* text) {
@@ -80,7 +93,8 @@ nlohmann::ordered_json slam_json(const SlamSummary& slam) {
   json["depth_error_m"] = {{"median", slam.fit.median_depth_m}};
   json["stamp_jumps"] = slam.num_stamp_jumps;
   json["resumed_views"] = slam.num_resumed;
-  json["up_source"] = slam.up_source;
+  if (slam.up) json["up"] = {{"source", slam.up->source == GravitySource::kFloor ? "floor" : "accelerometer"}, {"sigma_deg", degrees(slam.up->sigma_rad)}};
+  else json["up"] = nullptr;
   json["weak_spots"] = nlohmann::ordered_json::array();
   for (const WeakSpot& w : slam.weak_spots)
     json["weak_spots"].push_back({{"first_frame", w.first_frame}, {"last_frame", w.last_frame}, {"what", w.what}, {"advice", w.advice}});
@@ -112,6 +126,7 @@ std::string format_table(const BuildSummary& s) {
     append(&text, "%-22sunknown: no two views see the same place at different times\n", "pose inconsistency");
   }
   append(&text, "%-22s%.1f s, %.0f frames/s\n", "time", s.seconds, static_cast<double>(b.num_frames) / std::max(s.seconds, 1e-3));
+  if (s.survey) text += "\n" + format_table(*s.survey);
   append_submaps(s, &text);
   if (s.slam) append_weak_spots(s.slam->weak_spots, &text);
   if (s.is_partial) append(&text, "interrupted: this is a map of the first part; the same command with --resume goes on\n");
@@ -133,6 +148,7 @@ std::string format_json(const BuildSummary& s) {
                            {"image_spread", s.model_scale->image_spread},       {"pairs", s.model_scale->num_pairs},
                            {"images", s.model_scale->num_images}};
   }
+  if (s.survey) json["survey"] = nlohmann::ordered_json::parse(format_json(*s.survey));
   json["submaps"] = nlohmann::ordered_json::array();
   for (const SubmapSummary& submap : s.submaps)
     json["submaps"].push_back({{"map", submap.map_path}, {"keyframes", submap.num_keyframes}, {"views", submap.num_views}});

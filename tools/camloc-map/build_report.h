@@ -11,8 +11,10 @@
 
 #include "core/map/map_builder.h"
 #include "core/map/map_data.h"
+#include "core/geometry/gravity.h"
 #include "core/slam/slam.h"
 #include "tools/camloc-map/colmap_scale.h"
+#include "tools/camloc-map/georef_report.h"
 #include "tools/camloc-map/walk_check.h"
 
 namespace camloc::map_tool {
@@ -24,7 +26,8 @@ struct SlamSummary {
   std::vector<WeakSpot> weak_spots;
   std::uint64_t num_stamp_jumps = 0;
   std::uint64_t num_resumed = 0;       ///< views taken from an interrupted build
-  std::string up_source;               ///< what the vertical was found by, empty: not found
+  std::string up_problem;              ///< why no vertical was found
+  std::optional<GravityEstimate> up;   ///< before the map was turned
 };
 
 /// A stretch of the walk that hangs together with nothing else.
@@ -40,6 +43,7 @@ struct BuildSummary {
   bool is_partial = false;   ///< interrupted: a map of the first part
   std::optional<SlamSummary> slam;
   std::optional<ModelScale> model_scale;  ///< of the COLMAP model that the poses are from
+  std::optional<GeorefSummary> survey;  ///< control points, where there were some
   std::vector<SubmapSummary> submaps;   ///< besides the map itself
   MapBuildReport build;
   double pose_sigma_m = 0, pose_sigma_rad = 0;

@@ -42,6 +42,8 @@ Status check_arguments(const BuildArguments& arguments) {
   if (!request.trajectory_path.empty()) {
     if (const Status output = tools::check_output_path("--trajectory", request.trajectory_path); !output.is_ok()) return output;
   }
+  if (has_poses && !request.survey.points_path.empty())
+    return {ErrorCode::kInvalid, "--points: goes with a build without --poses; 'camloc map georef' fits a finished map"};
   if (request.is_resumed && !std::filesystem::exists(view_log_path(request.map_path)))
     return {ErrorCode::kInvalid, "--resume: there is no interrupted build of " + request.map_path + "; run it without --resume"};
   return Status::ok();
@@ -63,8 +65,14 @@ int run(BuildArguments arguments) {
     tools::print_error("camloc-map", std::to_string(summary.num_broken) + " of " + std::to_string(summary.num_selected) +
                                          " frames left out because they could not be read, the first: " + summary.first_broken);
   }
+  if (summary.survey && !summary.survey->is_written) {
+    tools::print_error("camloc-map", request.survey.points_path + ": " + summary.survey->fit.problem +
+                                         "; the map was written without site coordinates, 'camloc map georef' adds them");
+  }
   const std::string text = arguments.is_json ? format_json(summary) : format_table(summary);
-  return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0 ? 0 : 1;
+  const bool is_printed = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+  const bool is_complete = !summary.survey || summary.survey->is_written;
+  return is_printed && is_complete ? 0 : 1;
 }
 
 }  // namespace
@@ -97,7 +105,16 @@ void add_build_command(CLI::App& app, int& exit_code) {
       ->transform(CLI::CheckedTransformer(cameras));
   command->add_option("--trajectory", request.trajectory_path, "Write where the camera was in each frame, TUM format");
   command->add_flag("--resume", request.is_resumed, "Go on with a build of the same map that was interrupted");
-  command->add_flag("!--no-level", request.is_levelled, "Do not turn the map so that z points up from the floor");
+  command->add_flag("!--no-level", request.is_levelled, "Do not turn the map so that z points up");
+  command->add_option("--accelerometer", request.accelerometer_path,
+                      "Readings that say which way is up, 'timestamp ax ay az' (default: the floor, or accelerometer.txt of the recording)");
+  CLI::Option* points = command->add_option("--points", request.survey.points_path,
+                                            "Surveyed control points, 'name x y z [sigma_m]': they hold the map and fix it in the site");
+  CLI::Option* observed =
+      command->add_option("--observed", request.survey.observed_path, "Where they are seen, 'name pixel FRAME u v [sigma_px]'")->needs(points);
+  points->needs(observed);
+  command->add_flag("--exclude-suspects", request.survey.is_excluding_suspects, "Leave out control points that the others contradict")
+      ->needs(points);
   command->add_option("--ba", arguments->adjustment, "Bundle adjustment with measured depth or without, for comparison")
       ->check(CLI::IsMember({"2d", "depth"}))->capture_default_str();
   command->add_option("--tracking", arguments->tracking, "The same for tracking")

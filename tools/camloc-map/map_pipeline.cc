@@ -39,10 +39,12 @@ std::string segment_path(const std::string& map_path, std::size_t number) {
   return (path.parent_path() / (path.stem().string() + "." + std::to_string(number + 1) + path.extension().string())).string();
 }
 
-Status finish_map(const std::string& name, const std::string& path, MapBuilder* builder, BuildSummary* summary) {
+Status finish_map(const std::string& name, const std::string& path, const std::optional<WcsDatum>& datum, MapBuilder* builder,
+                  BuildSummary* summary) {
   auto map = builder->finish(&summary->build);
   if (!map.is_ok()) return map.status();
   map->name = name;
+  map->wcs = datum;
   if (const Status written = write_map(map.value(), path); !written.is_ok()) return written;
   summary->map_path = path;
   summary->pose_sigma_m = map->pose_sigma_m;
@@ -94,19 +96,90 @@ Status build_from_poses(const BuildRequest& request, BuildSummary* summary) {
                                      summary->first_broken};
   }
   progress.say("choosing landmarks and keyframes, training words ...");
-  return finish_map(request.name.empty() ? folder_name(frames->folder) : request.name, request.map_path, &builder, summary);
+  return finish_map(request.name.empty() ? folder_name(frames->folder) : request.name, request.map_path, std::nullopt, &builder, summary);
 }
 
 // --- SLAM finds the poses --------------------------------------------------------------------------------------------
 
-/// The second pass: what was seen, from where it was seen, becomes a map.
-Status map_segment(const BuildRequest& request, const WalkRequest& walk, const SlamResult& result, std::size_t number,
-                   const std::string& name, BuildSummary* summary) {
-  std::unordered_map<std::uint64_t, const SlamPose*> pose_of_frame;
-  for (const SlamPose& pose : result.poses) {
-    if (pose.segment == result.segments[number].id) pose_of_frame.emplace(pose.frame, &pose);
+/// A walk on its way to a map.
+struct Walk {
+  SelectedFrames frames;
+  WalkRequest pass;
+  std::optional<Survey> survey;
+  WalkEnd end;
+  SlamResult result;                ///< where the camera was
+  std::optional<WcsDatum> datum;    ///< where the largest segment lies in the site
+};
+
+Result<Walk> prepare_walk(const BuildRequest& request) {
+  Walk walk;
+  const auto frames = find_frames(request.frames);
+  if (!frames.is_ok()) return frames.status();
+  if (!frames->has_depth) return Status(ErrorCode::kInvalid, request.frames.sequence + ": has no depth images; a map needs depth");
+  walk.frames = frames.value();
+  SlamOptions slam = request.slam;
+  if (!request.survey.points_path.empty()) {
+    auto survey = read_survey(request.survey, walk.frames.folder, request.camera);
+    if (!survey.is_ok()) return survey.status();
+    walk.survey = std::move(survey).value();
+    slam.required_keyframes = frames_of(*walk.survey);
   }
-  auto log = ViewLogReader::open(walk.log_path, walk_identity(walk));
+  walk.pass = {walk.frames.url, walk.frames.num_selected, request.camera, request.map.orb, slam, view_log_path(request.map_path),
+               request.is_resumed};
+  return walk;
+}
+
+/// The first pass, and everything that is known only after it: poses, refusals, weak spots.
+Status find_poses(const BuildRequest& request, Slam* slam, Walk* walk, BuildSummary* summary) {
+  WalkCheck check(request.camera);
+  auto end = track_walk(walk->pass, slam, &check);
+  if (!end.is_ok()) return end.status();
+  walk->end = std::move(end).value();
+  summary->is_partial = walk->end.is_interrupted;
+  summary->num_broken = walk->end.num_broken;
+  summary->num_without_depth = walk->end.num_without_depth;
+  summary->first_broken = walk->end.first_broken;
+  const ProgressLine progress(0, "adjusting");
+  walk->result = slam->finish([&](int iteration, double) {
+    progress.say("adjusting all keyframes and landmarks, iteration " + std::to_string(iteration) + " ...");
+    return true;
+  });
+  if (walk->result.segments.empty())
+    return {ErrorCode::kInvalid, request.frames.sequence + ": no frame shows enough texture with depth to begin a map"};
+  if (const Status usable = check.verdict(walk->result); !usable.is_ok()) return usable;
+  summary->slam = SlamSummary{slam->counts(), walk->result.segments.front().fit, check.weak_spots(), check.num_stamp_jumps(),
+                              walk->end.num_resumed, "", std::nullopt};
+  return Status::ok();
+}
+
+/// Site coordinates from control points; else z up, where something says which way that is.
+Status place_walk(const BuildRequest& request, Slam* slam, Walk* walk, BuildSummary* summary) {
+  if (walk->survey) {
+    summary->survey = GeorefSummary{};
+    summary->survey->map_path = summary->survey->out_path = request.map_path;
+    walk->datum = adjust_to_survey(request.survey, *walk->survey, request.camera, slam, &walk->result, &*summary->survey);
+    summary->survey->is_written = walk->datum.has_value();
+    summary->slam->fit = walk->result.segments.front().fit;
+    if (walk->datum) return Status::ok();
+  }
+  if (!request.is_levelled) return Status::ok();
+  const auto up = find_up(walk->result, walk->end.surfaces, walk->frames.folder, request.accelerometer_path);
+  if (!up.is_ok()) {
+    summary->slam->up_problem = up.status().message();
+    return request.accelerometer_path.empty() ? Status::ok() : up.status();
+  }
+  level(up->up_map, walk->result.segments.front().id, &walk->result);
+  summary->slam->up = up.value();
+  return Status::ok();
+}
+
+/// The second pass: what was seen, from where it was seen, becomes a map.
+Status map_segment(const BuildRequest& request, const Walk& walk, std::size_t number, BuildSummary* summary) {
+  std::unordered_map<std::uint64_t, const SlamPose*> pose_of_frame;
+  for (const SlamPose& pose : walk.result.poses) {
+    if (pose.segment == walk.result.segments[number].id) pose_of_frame.emplace(pose.frame, &pose);
+  }
+  auto log = ViewLogReader::open(walk.pass.log_path, walk_identity(walk.pass));
   if (!log.is_ok()) return log.status();
   MapBuilder builder(request.camera, request.map);
   ProgressLine progress(pose_of_frame.size(), "mapping view");
@@ -119,7 +192,23 @@ Status map_segment(const BuildRequest& request, const WalkRequest& walk, const S
     progress.show(++done, std::to_string(builder.progress().num_landmarks_before) + " landmarks");
   }
   progress.say("choosing landmarks and keyframes, training words ...");
-  return finish_map(name, segment_path(request.map_path, number), &builder, summary);
+  const std::string name = request.name.empty() ? folder_name(walk.frames.folder) : request.name;
+  return finish_map(name, segment_path(request.map_path, number), number == 0 ? walk.datum : std::nullopt, &builder, summary);
+}
+
+/// One map a segment, the largest at the path the user asked for. Returns an error only for that one.
+Status write_segments(const BuildRequest& request, const Walk& walk, BuildSummary* summary) {
+  for (std::size_t number = walk.result.segments.size(); number-- > 0;) {
+    const SlamResult::Segment& segment = walk.result.segments[number];
+    if (number == 0) return map_segment(request, walk, number, summary);
+    SubmapSummary submap{"", segment.num_keyframes, segment.num_views};
+    if (segment.num_keyframes >= kMinSegmentKeyframes) {
+      BuildSummary of_segment;
+      if (map_segment(request, walk, number, &of_segment).is_ok()) submap.map_path = of_segment.map_path;
+    }
+    summary->submaps.push_back(submap);
+  }
+  return Status::ok();
 }
 
 Status write_trajectory(const BuildRequest& request, const SlamResult& result, std::uint64_t num_frames) {
@@ -133,60 +222,18 @@ Status write_trajectory(const BuildRequest& request, const SlamResult& result, s
   return tools::write_text_file(request.trajectory_path, format_trajectory(trajectory));
 }
 
-/// One map a segment, the largest at the path the user asked for. Returns an error only for that one.
-Status write_segments(const BuildRequest& request, const WalkRequest& walk, const SlamResult& result, const std::string& name,
-                      BuildSummary* summary) {
-  for (std::size_t number = result.segments.size(); number-- > 0;) {
-    const SlamResult::Segment& segment = result.segments[number];
-    if (number > 0 && segment.num_keyframes < kMinSegmentKeyframes) {
-      summary->submaps.push_back({"", segment.num_keyframes, segment.num_views});
-      continue;
-    }
-    BuildSummary of_segment;
-    const Status mapped = map_segment(request, walk, result, number, name, number == 0 ? summary : &of_segment);
-    if (number == 0) return mapped;
-    summary->submaps.push_back({mapped.is_ok() ? of_segment.map_path : "", segment.num_keyframes, segment.num_views});
-  }
-  return Status::ok();
-}
-
 Status build_from_walk(const BuildRequest& request, BuildSummary* summary) {
-  const auto frames = find_frames(request.frames);
-  if (!frames.is_ok()) return frames.status();
-  if (!frames->has_depth) return {ErrorCode::kInvalid, request.frames.sequence + ": has no depth images; a map needs depth"};
-  summary->num_recorded = frames->num_recorded;
-  summary->num_selected = frames->num_selected;
-
-  const WalkRequest walk{frames->url, frames->num_selected, request.camera, request.map.orb, request.slam,
-                         view_log_path(request.map_path), request.is_resumed};
-  Slam slam(request.camera, request.slam);
-  WalkCheck check(request.camera);
-  const auto end = track_walk(walk, &slam, &check);
-  if (!end.is_ok()) return end.status();
-  summary->is_partial = end->is_interrupted;
-  summary->num_broken = end->num_broken;
-  summary->num_without_depth = end->num_without_depth;
-  summary->first_broken = end->first_broken;
-
-  ProgressLine progress(0, "adjusting");
-  summary->slam = SlamSummary{};
-  const SlamResult result = slam.finish([&](int iteration, double) {
-    progress.say("adjusting all keyframes and landmarks, iteration " + std::to_string(iteration) + " ...");
-    return true;
-  });
-  if (result.segments.empty()) {
-    return {ErrorCode::kInvalid, request.frames.sequence + ": no frame shows enough texture with depth to begin a map"};
-  }
-  if (const Status usable = check.verdict(result); !usable.is_ok()) return usable;
-  summary->slam->counts = slam.counts();
-  summary->slam->num_resumed = end->num_resumed;
-  summary->slam->fit = result.segments.front().fit;
-  summary->slam->weak_spots = check.weak_spots();
-  summary->slam->num_stamp_jumps = check.num_stamp_jumps();
-  const std::string name = request.name.empty() ? folder_name(frames->folder) : request.name;
-  if (const Status written = write_segments(request, walk, result, name, summary); !written.is_ok()) return written;
-  if (const Status written = write_trajectory(request, result, slam.counts().num_views); !written.is_ok()) return written;
-  if (!summary->is_partial) std::filesystem::remove(walk.log_path);
+  auto prepared = prepare_walk(request);
+  if (!prepared.is_ok()) return prepared.status();
+  Walk walk = std::move(prepared).value();
+  summary->num_recorded = walk.frames.num_recorded;
+  summary->num_selected = walk.frames.num_selected;
+  Slam slam(request.camera, walk.pass.slam);
+  if (const Status found = find_poses(request, &slam, &walk, summary); !found.is_ok()) return found;
+  if (const Status placed = place_walk(request, &slam, &walk, summary); !placed.is_ok()) return placed;
+  if (const Status written = write_segments(request, walk, summary); !written.is_ok()) return written;
+  if (const Status written = write_trajectory(request, walk.result, slam.counts().num_views); !written.is_ok()) return written;
+  if (!summary->is_partial) std::filesystem::remove(walk.pass.log_path);
   return Status::ok();
 }
 

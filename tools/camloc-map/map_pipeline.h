@@ -13,6 +13,7 @@
 #include "core/slam/slam.h"
 #include "tools/camloc-map/build_report.h"
 #include "tools/camloc-map/posed_frames.h"
+#include "tools/camloc-map/walk_site.h"
 
 namespace camloc::map_tool {
 
@@ -25,7 +26,9 @@ struct BuildRequest {
   std::string name;               ///< of the map; empty: the folder's
   std::string trajectory_path;    ///< where the camera was, TUM format; empty: not written
   bool is_resumed = false;
-  bool is_levelled = true;        ///< turn the map so that z is up where the floor shows which way that is
+  bool is_levelled = true;        ///< turn the map so that z is up where floor or accelerometer show which way that is
+  std::string accelerometer_path; ///< empty: accelerometer.txt of the recording, if there is one and no floor
+  SurveyRequest survey;           ///< control points
 };
 
 /// Makes the map and says what came of it. Errors: kInvalid for what the user can change in the request or the recording. An

@@ -71,7 +71,7 @@ class Pass {
     return log.flush();
   }
 
-  [[nodiscard]] const WalkEnd& end() const { return end_; }
+  [[nodiscard]] WalkEnd end() { return std::move(end_); }
 
  private:
   static std::size_t num_with_depth(const ViewFeatures& view) {
@@ -93,7 +93,9 @@ class Pass {
   }
 
   void track(const LoggedView& logged) {
-    check_->see_report(slam_->add_view(logged.frame, logged.view));
+    const ViewReport report = slam_->add_view(logged.frame, logged.view);
+    check_->see_report(report);
+    if (report.is_keyframe) end_.surfaces.push_back({logged.frame, logged.surface_m});
     progress_.show(++num_done_, note_of(slam_->counts()));
   }
 

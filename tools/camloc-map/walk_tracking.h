@@ -27,8 +27,15 @@ struct WalkRequest {
   bool is_resumed = false;        ///< go on from the log
 };
 
+/// Surfaces as a keyframe saw them, in its camera frame.
+struct KeyframeSurface {
+  std::uint64_t frame = 0;
+  std::vector<Eigen::Vector3f> points_m;
+};
+
 /// How the pass ended.
 struct WalkEnd {
+  std::vector<KeyframeSurface> surfaces;
   bool is_interrupted = false;        ///< Ctrl-C: what is there is a map of the first part
   std::uint64_t num_resumed = 0;      ///< views that came from the log
   std::uint64_t num_broken = 0;       ///< frames that could not be read
