@@ -84,8 +84,9 @@ void append_distances(const EvalSummary& s, std::string* text) {
 
 void append_scale(const Evaluation& e, std::string* text) {
   if (e.scale) append(text, "%-22s%.4f by ICP (expected 1 +- 0.01)\n", "scale", *e.scale);
-  if (e.points_scale) append(text, "%-22s%.4f by the control points\n", "", *e.points_scale);
-  if (e.poses_scale) append(text, "%-22s%.4f by the camera positions\n", "", *e.poses_scale);
+  if (e.points_scale)
+    append(text, "%-22s%.4f by the control points (1 +- %.2f)\n", "", *e.points_scale, e.points_scale_tolerance);
+  if (e.poses_scale) append(text, "%-22s%.4f by the camera positions (1 +- %.2f)\n", "", *e.poses_scale, e.poses_scale_tolerance);
   const Eigen::Vector3d &m = e.distances.map_extent_m, &c = e.distances.cloud_extent_m;
   append(text, "%-22smap %.1f x %.1f x %.1f m, cloud %.1f x %.1f x %.1f m, volumes %.3g : 1\n", "boxes", m.x(), m.y(), m.z(),
          c.x(), c.y(), c.z(), e.distances.volume_ratio());

@@ -22,16 +22,16 @@ constexpr double kScaleTolerance = 0.01;
 }
 
 void warn_about_scale(const Evaluation& e, std::vector<std::string>* warnings) {
-  const auto warn = [&](const std::optional<double>& scale, const char* how) {
-    if (!scale || std::abs(*scale - 1) <= kScaleTolerance) return;
+  const auto warn = [&](const std::optional<double>& scale, double tolerance, const char* how) {
+    if (!scale || std::abs(*scale - 1) <= tolerance) return;
     warnings->push_back(
-        text_of("SCALE: by %s the map would have to be multiplied by %.4f to fit the cloud; expected 1 +- %.2f. The distances "
-                "above deceive",
-                how, *scale, kScaleTolerance));
+        text_of("SCALE: by %s the map would have to be multiplied by %.4f to fit the cloud; expected 1 +- %.2f. The "
+                "distances above deceive",
+                how, *scale, tolerance));
   };
-  warn(e.scale, "ICP");
-  warn(e.points_scale, "the control points");
-  warn(e.poses_scale, "the camera positions");
+  warn(e.scale, kScaleTolerance, "ICP");
+  warn(e.points_scale, e.points_scale_tolerance, "the control points");
+  warn(e.poses_scale, e.poses_scale_tolerance, "the camera positions");
   if (const double ratio = e.distances.volume_ratio(); ratio < 0.2 || ratio > 5) {
     warnings->push_back(
         text_of("VOLUME: the map's box is %.3g times the cloud's; either %s, or its scale is wrong. Control points would tell",

@@ -201,6 +201,15 @@ Result<Registration> refine(const MapPoints& points, const Rigid3& start, const 
   return register_points(points.landmarks, cloud, coarse.value().T_cloud_map, registration);
 }
 
+/// RMS distance from the middle, in the cloud.
+double spread_of(const std::vector<PointPair>& pairs) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const PointPair& pair : pairs) mean += pair.p_a / static_cast<double>(pairs.size());
+  double sum = 0;
+  for (const PointPair& pair : pairs) sum += (pair.p_a - mean).squaredNorm() / static_cast<double>(pairs.size());
+  return std::sqrt(sum);
+}
+
 void check_scale(const EvaluationInput& input, const MapPoints& points, const Rigid3& T_cloud_map,
                  const EvaluationOptions& options, CloudIndex* cloud, Evaluation* result) {
   RegistrationOptions registration;
@@ -212,13 +221,14 @@ void check_scale(const EvaluationInput& input, const MapPoints& points, const Ri
     result->scale = similar.value().T_cloud_map.scale;
     result->sigma_scale = similar.value().sigma_scale;
   }
-  const auto scale_of = [](const std::vector<PointPair>& pairs) -> std::optional<double> {
+  const auto measure = [](const std::vector<PointPair>& pairs, std::optional<double>* scale, double* tolerance) {
     const Alignment aligned = align_similarity(pairs);
-    return aligned.rank == AlignmentRank::kNothing || aligned.rank == AlignmentRank::kPosition ? std::nullopt
-                                                                                               : std::optional(aligned.scale);
+    if (aligned.rank == AlignmentRank::kNothing || aligned.rank == AlignmentRank::kPosition) return;
+    *scale = aligned.scale;
+    *tolerance = std::max(*tolerance, 2 * aligned.rms_m / std::max(1e-9, spread_of(pairs)));
   };
-  result->points_scale = scale_of(pairs_of(input.points, input.cloud->origin_m));
-  result->poses_scale = scale_of(pairs_of(input.poses, input.cloud->origin_m, false));
+  measure(pairs_of(input.points, input.cloud->origin_m), &result->points_scale, &result->points_scale_tolerance);
+  measure(pairs_of(input.poses, input.cloud->origin_m, false), &result->poses_scale, &result->poses_scale_tolerance);
 }
 
 void measure_residuals(const EvaluationInput& input, const Rigid3& T_cloud_map, Evaluation* result) {

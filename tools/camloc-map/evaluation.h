@@ -67,6 +67,8 @@ struct Evaluation {
   double moved_m = 0, moved_rad = 0;                                 ///< by ICP: the middle of the landmarks, and the rotation
   std::optional<double> scale, sigma_scale;                          ///< of a similarity by ICP: 1 expected
   std::optional<double> points_scale, poses_scale;                   ///< by Umeyama over control points, over camera positions
+  /// Twice what residuals of that size do to a scale over points that lie so far apart, at least 0.01.
+  double points_scale_tolerance = 0.01, poses_scale_tolerance = 0.01;
   std::vector<PointResidual> residuals;
   double max_distance_m = 0.5;  ///< farther from the cloud is outside of it
   CloudDistances distances;
