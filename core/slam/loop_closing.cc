@@ -14,6 +14,7 @@ constexpr std::size_t kMaxPending = 8;
 constexpr std::uint32_t kMaxPendingGap = 6;      // keyframes between two opinions on one loop
 constexpr std::uint32_t kMinLinkShared = 60;     // landmarks that make two keyframes linked in the pose graph
 constexpr float kFuseRadiusPx = 8;
+constexpr double kMaxStrain = 3;
 constexpr double kMaxLooseness = 20;
 constexpr double kLinkM = 0.006, kLinkRad = 0.005;   // what a link of full strength is good for
 
@@ -93,26 +94,19 @@ bool LoopCloser::is_confirmed(double strain) const {
 
 std::optional<LoopMatch> LoopCloser::find(std::uint32_t keyframe, const PlaceIndex& places) {
   const SlamKeyframe& query = map_->keyframe(keyframe);
-  std::vector<std::uint8_t> is_near(map_->keyframes().size(), 0);
-  is_near[keyframe] = 1;
+  std::vector<std::uint8_t> is_linked(map_->keyframes().size(), 0);
+  is_linked[keyframe] = 1;
   for (const CovisibleKeyframe& c : map_->covisible(keyframe, options_.max_shared)) {
-    is_near[c.keyframe] = 1;
-    for (const CovisibleKeyframe& next : map_->covisible(c.keyframe, 2 * options_.max_shared)) is_near[next.keyframe] = 1;
+    is_linked[c.keyframe] = 1;
+    for (const CovisibleKeyframe& next : map_->covisible(c.keyframe, 2 * options_.max_shared)) is_linked[next.keyframe] = 1;
   }
-  struct Candidate {
-    std::uint32_t place;
-    double strain;
-    Registration found;
-  };
   std::vector<Candidate> candidates;
+  for (const std::uint32_t place : nearby_keyframes(keyframe, is_linked)) try_place(keyframe, place, true, &candidates);
   std::size_t num_tried = 0;
   for (const RankedPlace& ranked : places.query(query.view.features.descriptors, options_.num_retrieved)) {
-    if (ranked.keyframe >= is_near.size() || is_near[ranked.keyframe] != 0 || !may_see(keyframe, ranked.keyframe)) continue;
+    if (ranked.keyframe >= is_linked.size() || is_linked[ranked.keyframe] != 0 || !may_see(keyframe, ranked.keyframe)) continue;
     if (num_tried++ == options_.num_candidates) break;
-    Registration found = register_to_place(keyframe, ranked.keyframe, query.frame);
-    if (!found.is_found) continue;
-    const double how_strained = strain(keyframe, ranked.keyframe, found.T_map_camera);
-    if (how_strained <= 3) candidates.push_back({ranked.keyframe, how_strained, std::move(found)});
+    try_place(keyframe, ranked.keyframe, false, &candidates);
   }
   if (candidates.empty()) return std::nullopt;
   auto& best = *std::max_element(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
@@ -138,14 +132,37 @@ std::optional<LoopMatch> LoopCloser::find(std::uint32_t keyframe, const PlaceInd
   return match;
 }
 
-Registration LoopCloser::register_to_place(std::uint32_t keyframe, std::uint32_t place, std::uint64_t seed) {
+// Keyframes of the segment that the poses say look at the same, and that are linked by nothing; nearest first.
+std::vector<std::uint32_t> LoopCloser::nearby_keyframes(std::uint32_t keyframe, const std::vector<std::uint8_t>& is_linked) const {
+  const SlamKeyframe& here = map_->keyframe(keyframe);
+  std::vector<std::pair<double, std::uint32_t>> nearby;
+  for (std::uint32_t k = 0; k < map_->keyframes().size(); ++k) {
+    const SlamKeyframe& there = map_->keyframe(k);
+    if (is_linked[k] != 0 || there.segment != here.segment) continue;
+    const double apart_m = (there.view.T_map_camera.translation - here.view.T_map_camera.translation).norm();
+    const double turned_rad = rotation_distance_rad(there.view.T_map_camera.rotation, here.view.T_map_camera.rotation);
+    if (apart_m <= options_.nearby_m && turned_rad <= options_.nearby_rad) nearby.emplace_back(apart_m + turned_rad, k);
+  }
+  std::sort(nearby.begin(), nearby.end());
+  if (nearby.size() > options_.num_nearby) nearby.resize(options_.num_nearby);
+  std::vector<std::uint32_t> result;
+  for (const auto& [distance, k] : nearby) result.push_back(k);
+  return result;
+}
+
+void LoopCloser::try_place(std::uint32_t keyframe, std::uint32_t place, bool is_nearby, std::vector<Candidate>* candidates) {
   std::vector<std::uint32_t> keyframes = {place};
   for (const CovisibleKeyframe& c : map_->covisible(place, 30)) {
     if (keyframes.size() >= options_.keyframes_per_place) break;
     if (c.keyframe != keyframe) keyframes.push_back(c.keyframe);
   }
   place_landmarks_.assign(*map_, keyframes, options_.max_place_landmarks);
-  return registration_->unguided(map_->keyframe(keyframe).view, &place_landmarks_, seed);
+  const SlamKeyframe& query = map_->keyframe(keyframe);
+  Registration found = is_nearby ? registration_->guided(query.view, &place_landmarks_, query.view.T_map_camera, options_.nearby_radius_px, query.frame)
+                                 : registration_->unguided(query.view, &place_landmarks_, query.frame);
+  if (!found.is_found) return;
+  const double how_strained = strain(keyframe, place, found.T_map_camera);
+  if (how_strained <= kMaxStrain) candidates->push_back({place, how_strained, std::move(found)});
 }
 
 bool LoopCloser::is_convincing(const Registration& found) const {

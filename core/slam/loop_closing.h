@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Has this place been seen before? Words propose, geometry verifies, and a second opinion is asked for wherever the answer
+// Has this place been seen before? Words propose, and so does the map itself where the drift is small; geometry verifies, and a second opinion is asked for wherever the answer
 // would move the map by more than the drift explains: buildings repeat themselves, and one false loop ruins a map. A loop is
 // closed when
 //   - many landmarks of the old place fit the view, with pixels and with depth, spread over the image;
@@ -27,6 +27,9 @@ namespace camloc {
 struct LoopOptions {
   std::size_t num_retrieved = 100;       ///< places that look alike
   std::size_t num_candidates = 8;        ///< of those that are possible, asked for geometry
+  std::size_t num_nearby = 3;            ///< keyframes that should see the same, by their poses
+  double nearby_m = 1.5, nearby_rad = 0.7;
+  float nearby_radius_px = 30;           ///< search window there
   std::size_t keyframes_per_place = 6;
   std::size_t max_place_landmarks = 3500;
   std::uint32_t max_shared = 20;         ///< a keyframe with more common landmarks is a neighbour, no loop
@@ -89,7 +92,13 @@ class LoopCloser {
  private:
   void note_links(std::uint32_t keyframe);
   [[nodiscard]] std::optional<LoopMatch> find(std::uint32_t keyframe, const PlaceIndex& places);
-  [[nodiscard]] Registration register_to_place(std::uint32_t keyframe, std::uint32_t place, std::uint64_t seed);
+  struct Candidate {
+    std::uint32_t place;
+    double strain;
+    Registration found;
+  };
+  void try_place(std::uint32_t keyframe, std::uint32_t place, bool is_nearby, std::vector<Candidate>* candidates);
+  [[nodiscard]] std::vector<std::uint32_t> nearby_keyframes(std::uint32_t keyframe, const std::vector<std::uint8_t>& is_linked) const;
   [[nodiscard]] bool is_convincing(const Registration& found) const;
   struct Drift {
     double sigma_m, sigma_rad;
