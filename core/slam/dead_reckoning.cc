@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/slam/dead_reckoning.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace camloc {
+namespace {
+
+constexpr double kMaxLooseness = 20;
+constexpr double kLinkM = 0.006, kLinkRad = 0.005;   // what a link of full strength is good for
+
+double looseness_of(std::uint32_t num_shared) { return std::clamp(150.0 / std::max(num_shared, 1U), 1.0, kMaxLooseness); }
+
+}  // namespace
+
+Matrix6d diagonal_covariance(double sigma_m, double sigma_rad) {
+  Matrix6d covariance = Matrix6d::Zero();
+  covariance.diagonal() << Eigen::Vector3d::Constant(sigma_m * sigma_m), Eigen::Vector3d::Constant(sigma_rad * sigma_rad);
+  return covariance;
+}
+
+Matrix6d link_covariance(const Rigid3& T_i_j, std::uint32_t num_shared) {
+  const double looseness = looseness_of(num_shared);
+  return diagonal_covariance(looseness * (kLinkM + 0.01 * T_i_j.translation.norm()), looseness * kLinkRad);
+}
+
+void DeadReckoning::note_links(std::uint32_t keyframe) {
+  const auto neighbours = map_->covisible(keyframe, 1);
+  if (looseness_.size() <= keyframe) looseness_.resize(keyframe + 1, kMaxLooseness);   // the first of a segment has no link
+  looseness_[keyframe] = looseness_of(neighbours.empty() ? 0 : neighbours.front().num_shared);
+}
+
+// Grows with the way between the two, and with every weak link on it.
+DeadReckoning::Drift DeadReckoning::drift(std::uint32_t a, std::uint32_t b) const {
+  const auto [from, to] = std::minmax(a, b);
+  Drift drift{options_.drift_m, options_.drift_rad};
+  double loose = 0;
+  for (std::uint32_t k = from + 1; k <= to; ++k) {
+    const Rigid3 step = map_->keyframe(k - 1).view.T_map_camera.inverse() * map_->keyframe(k).view.T_map_camera;
+    const double walked = step.translation.norm(), turned_rad = rotation_distance_rad(step.rotation, Eigen::Quaterniond::Identity());
+    drift.sigma_m += options_.drift_per_m * walked;
+    drift.sigma_rad += options_.drift_rad_per_m * walked + options_.drift_rad_per_rad * turned_rad;
+    loose += (looseness_[k] - 1) * (looseness_[k] - 1);
+  }
+  drift.sigma_m += kLinkM * std::sqrt(loose);
+  drift.sigma_rad += kLinkRad * std::sqrt(loose);
+  return drift;
+}
+
+// Could the camera have come within sight of that place?
+bool DeadReckoning::may_see(std::uint32_t keyframe, std::uint32_t place) const {
+  const Eigen::Vector3d here = map_->keyframe(keyframe).view.T_map_camera.translation;
+  const Eigen::Vector3d there = map_->keyframe(place).view.T_map_camera.translation;
+  if (map_->keyframe(place).segment == map_->keyframe(keyframe).segment) {
+    const Drift expected = drift(place, keyframe);
+    return (here - there).norm() <= options_.view_range_m + 3 * expected.sigma_m;
+  }
+  const SegmentBegin* begin = begin_between(place, keyframe);
+  if (begin == nullptr) return true;
+  const Rigid3 T_map_lost = map_->keyframe(begin->keyframe_before).view.T_map_camera * begin->T_before_camera;
+  const Rigid3 T_map_found = map_->keyframe(begin->first_keyframe).view.T_map_camera;
+  const bool is_place_before = map_->keyframe(place).segment == map_->keyframe(begin->keyframe_before).segment;
+  const double apart = is_place_before ? (there - T_map_lost.translation).norm() - (here - T_map_found.translation).norm()
+                                       : (there - T_map_found.translation).norm() - (here - T_map_lost.translation).norm();
+  return apart <= options_.view_range_m + options_.reach_m + options_.reach_m_s * begin->gap_s;
+}
+
+// How the later one of two neighbouring segments began.
+const SegmentBegin* DeadReckoning::begin_between(std::uint32_t a, std::uint32_t b) const {
+  const std::uint32_t segment_a = map_->keyframe(a).segment, segment_b = map_->keyframe(b).segment;
+  for (const SegmentBegin& begin : begins_) {
+    if (!begin.has_before) continue;
+    const std::uint32_t before = map_->keyframe(begin.keyframe_before).segment, after = map_->keyframe(begin.first_keyframe).segment;
+    if ((before == segment_a && after == segment_b) || (before == segment_b && after == segment_a)) return &begin;
+  }
+  return nullptr;
+}
+
+double DeadReckoning::strain(std::uint32_t keyframe, std::uint32_t place, const Rigid3& T_map_keyframe) const {
+  const Rigid3 T_map_now = map_->keyframe(keyframe).view.T_map_camera;
+  if (map_->keyframe(place).segment == map_->keyframe(keyframe).segment) {
+    const Drift expected = drift(place, keyframe);
+    return std::max((T_map_keyframe.translation - T_map_now.translation).norm() / expected.sigma_m,
+                    rotation_distance_rad(T_map_keyframe.rotation, T_map_now.rotation) / expected.sigma_rad);
+  }
+  const SegmentBegin* begin = begin_between(place, keyframe);
+  if (begin == nullptr) return 0;
+  const Rigid3 T_correction = T_map_keyframe * T_map_now.inverse();   // from the segment of the keyframe to that of the place
+  Eigen::Vector3d lost = map_->keyframe(begin->keyframe_before).view.T_map_camera * begin->T_before_camera.translation;
+  Eigen::Vector3d found = map_->keyframe(begin->first_keyframe).view.T_map_camera.translation;
+  if (map_->keyframe(begin->keyframe_before).segment == map_->keyframe(keyframe).segment) lost = T_correction * lost;
+  else found = T_correction * found;
+  return (found - lost).norm() <= options_.reach_m + options_.reach_m_s * begin->gap_s ? 0 : 10;
+}
+
+}  // namespace camloc

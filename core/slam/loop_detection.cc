@@ -1,0 +1,104 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/slam/loop_detection.h"
+
+#include <algorithm>
+
+namespace camloc {
+namespace {
+
+Matrix6d turned(const Matrix6d& covariance, const Eigen::Quaterniond& rotation) {
+  Matrix6d turn = Matrix6d::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = rotation.toRotationMatrix();
+  return turn * covariance * turn.transpose();
+}
+
+}  // namespace
+
+std::optional<LoopMatch> LoopDetector::find(std::uint32_t keyframe, const PlaceIndex& places) {
+  const SlamKeyframe& query = map_->keyframe(keyframe);
+  const std::vector<std::uint8_t> is_linked = linked_keyframes(keyframe);
+  std::vector<Candidate> candidates;
+  for (const std::uint32_t place : nearby_keyframes(keyframe, is_linked)) try_place(keyframe, place, true, &candidates);
+  std::size_t num_tried = 0;
+  for (const RankedPlace& ranked : places.query(query.view.features.descriptors, options_.num_retrieved)) {
+    if (ranked.keyframe >= is_linked.size() || is_linked[ranked.keyframe] != 0 || !reckoning_->may_see(keyframe, ranked.keyframe)) continue;
+    if (num_tried++ == options_.num_candidates) break;
+    try_place(keyframe, ranked.keyframe, false, &candidates);
+  }
+  const auto best = std::max_element(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+    return a.found.num_inliers() < b.found.num_inliers();
+  });
+  if (best == candidates.end() || !is_convincing(best->found) || has_rival(*best, candidates)) return std::nullopt;
+  const Rigid3 T_map_place = map_->keyframe(best->place).view.T_map_camera;
+  LoopMatch match;
+  match.keyframe = keyframe;
+  match.place = best->place;
+  match.strain = best->strain;
+  match.T_place_keyframe = T_map_place.inverse() * best->found.T_map_camera;
+  match.covariance = turned(best->found.covariance, T_map_place.rotation.conjugate()) + diagonal_covariance(0.005, 0.002);
+  match.T_correction = best->found.T_map_camera * query.view.T_map_camera.inverse();
+  match.registration = std::move(best->found);
+  return match;
+}
+
+// The keyframe itself, those it shares landmarks with, and those that these do: nothing of that is a loop.
+std::vector<std::uint8_t> LoopDetector::linked_keyframes(std::uint32_t keyframe) const {
+  std::vector<std::uint8_t> is_linked(map_->keyframes().size(), 0);
+  is_linked[keyframe] = 1;
+  for (const CovisibleKeyframe& c : map_->covisible(keyframe, options_.max_shared)) {
+    is_linked[c.keyframe] = 1;
+    for (const CovisibleKeyframe& next : map_->covisible(c.keyframe, 2 * options_.max_shared)) is_linked[next.keyframe] = 1;
+  }
+  return is_linked;
+}
+
+// Keyframes of the segment that the poses say look at the same, and that are linked by nothing; nearest first.
+std::vector<std::uint32_t> LoopDetector::nearby_keyframes(std::uint32_t keyframe, const std::vector<std::uint8_t>& is_linked) const {
+  const SlamKeyframe& here = map_->keyframe(keyframe);
+  std::vector<std::pair<double, std::uint32_t>> nearby;
+  for (std::uint32_t k = 0; k < map_->keyframes().size(); ++k) {
+    const SlamKeyframe& there = map_->keyframe(k);
+    if (is_linked[k] != 0 || there.segment != here.segment) continue;
+    const double apart_m = (there.view.T_map_camera.translation - here.view.T_map_camera.translation).norm();
+    const double turned_rad = rotation_distance_rad(there.view.T_map_camera.rotation, here.view.T_map_camera.rotation);
+    if (apart_m <= options_.nearby_m && turned_rad <= options_.nearby_rad) nearby.emplace_back(apart_m + turned_rad, k);
+  }
+  std::sort(nearby.begin(), nearby.end());
+  if (nearby.size() > options_.num_nearby) nearby.resize(options_.num_nearby);
+  std::vector<std::uint32_t> result;
+  for (const auto& [distance, k] : nearby) result.push_back(k);
+  return result;
+}
+
+void LoopDetector::try_place(std::uint32_t keyframe, std::uint32_t place, bool is_nearby, std::vector<Candidate>* candidates) {
+  std::vector<std::uint32_t> keyframes = {place};
+  for (const CovisibleKeyframe& c : map_->covisible(place, 30)) {
+    if (keyframes.size() >= options_.keyframes_per_place) break;
+    if (c.keyframe != keyframe) keyframes.push_back(c.keyframe);
+  }
+  place_landmarks_.assign(*map_, keyframes, options_.max_place_landmarks);
+  const SlamKeyframe& query = map_->keyframe(keyframe);
+  Registration found = is_nearby ? registration_->guided(query.view, &place_landmarks_, query.view.T_map_camera, options_.nearby_radius_px, query.frame)
+                                 : registration_->unguided(query.view, &place_landmarks_, query.frame);
+  if (!found.is_found) return;
+  const double strain = reckoning_->strain(keyframe, place, found.T_map_camera);
+  if (strain <= DeadReckoning::kMaxStrain) candidates->push_back({place, strain, std::move(found)});
+}
+
+bool LoopDetector::is_convincing(const Registration& found) const {
+  return found.is_found && found.num_inliers() >= options_.min_inliers && found.inlier_ratio() >= options_.min_inlier_ratio &&
+         found.depth_agreement >= options_.min_depth_agreement && found.spread >= options_.min_spread;
+}
+
+bool LoopDetector::has_rival(const Candidate& best, const std::vector<Candidate>& candidates) const {
+  return std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
+    const bool is_comparable = map_->keyframe(other.place).segment == map_->keyframe(best.place).segment;
+    const bool is_elsewhere =
+        (other.found.T_map_camera.translation - best.found.T_map_camera.translation).norm() > options_.rival_distance_m ||
+        rotation_distance_rad(other.found.T_map_camera.rotation, best.found.T_map_camera.rotation) > options_.rival_angle_rad;
+    return is_comparable && is_elsewhere && other.found.num_inliers() > options_.max_rival_share * best.found.num_inliers();
+  });
+}
+
+}  // namespace camloc
