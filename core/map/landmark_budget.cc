@@ -17,11 +17,12 @@ struct Candidate {
 
 class Selector {
  public:
-  Selector(std::span<const std::vector<ViewObservation>> views, std::size_t num_landmarks)
+  Selector(std::span<const std::vector<ViewObservation>> views, std::size_t num_landmarks, std::span<const float> worth)
       : first_bin_(num_landmarks + 1, 0),
         count_of_bin_(views.size() * kNumCells, 0),
         count_of_view_(views.size(), 0),
-        is_kept_(num_landmarks, 0) {
+        is_kept_(num_landmarks, 0),
+        worth_(worth) {
     for (const auto& view : views) {
       for (const ViewObservation& o : view) ++first_bin_[o.landmark + 1];
     }
@@ -37,7 +38,7 @@ class Selector {
   void take(std::uint32_t min_observations, std::uint32_t wanted, std::uint32_t max_landmarks) {
     std::priority_queue<Candidate> queue;
     for (std::uint32_t i = 0; i < is_kept_.size(); ++i) {
-      if (is_kept_[i] == 0 && bins_of(i).size() >= min_observations) queue.push({gain(i), i});
+      if (is_kept_[i] == 0 && num_observations(i) >= min_observations) queue.push({gain(i), i});
     }
     while (!queue.empty() && (max_landmarks == 0 || num_kept_ < max_landmarks)) {
       Candidate top = queue.top();
@@ -64,11 +65,14 @@ class Selector {
   [[nodiscard]] std::span<const std::uint32_t> bins_of(std::uint32_t landmark) const {
     return std::span(bins_).subspan(first_bin_[landmark], first_bin_[landmark + 1] - first_bin_[landmark]);
   }
+  [[nodiscard]] double num_observations(std::uint32_t landmark) const {
+    return worth_.empty() ? static_cast<double>(bins_of(landmark).size()) : static_cast<double>(worth_[landmark]);
+  }
   [[nodiscard]] double gain(std::uint32_t landmark) const {
     double sum = 0;
     for (const std::uint32_t bin : bins_of(landmark))
       sum += std::sqrt(count_of_bin_[bin] + 1.0) - std::sqrt(static_cast<double>(count_of_bin_[bin]));
-    return sum;
+    return worth_.empty() || sum == 0 ? sum : sum * num_observations(landmark) / static_cast<double>(bins_of(landmark).size());
   }
   [[nodiscard]] bool is_needed(std::uint32_t landmark, std::uint32_t wanted) const {
     const auto bins = bins_of(landmark);
@@ -87,14 +91,15 @@ class Selector {
   std::vector<std::uint32_t> bins_;     ///< (view, cell) of each observation, grouped by landmark
   std::vector<std::uint32_t> count_of_bin_, count_of_view_;
   std::vector<std::uint8_t> is_kept_;
+  std::span<const float> worth_;
   std::uint32_t num_kept_ = 0;
 };
 
 }  // namespace
 
 std::vector<std::uint32_t> select_landmarks(std::span<const std::vector<ViewObservation>> views, std::size_t num_landmarks,
-                                            const LandmarkBudgetOptions& options) {
-  Selector selector(views, num_landmarks);
+                                            const LandmarkBudgetOptions& options, std::span<const float> worth) {
+  Selector selector(views, num_landmarks, worth);
   selector.take(std::max(options.min_observations, 1U), options.wanted_per_view, options.max_landmarks);
   selector.take(1, options.min_per_view, options.max_landmarks);
   return selector.kept();

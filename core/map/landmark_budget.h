@@ -22,8 +22,10 @@ struct LandmarkBudgetOptions {
   std::uint32_t min_per_view = 60;      ///< a view with fewer needs every landmark it can get
 };
 
-/// Indices of the landmarks to keep, ascending.
+/// Indices of the landmarks to keep, ascending. `worth` may say for each landmark how many observations those in `views` stand
+/// for, where the views are a choice themselves; empty: each for itself.
 [[nodiscard]] std::vector<std::uint32_t> select_landmarks(std::span<const std::vector<ViewObservation>> views,
-                                                          std::size_t num_landmarks, const LandmarkBudgetOptions& options);
+                                                          std::size_t num_landmarks, const LandmarkBudgetOptions& options,
+                                                          std::span<const float> worth = {});
 
 }  // namespace camloc

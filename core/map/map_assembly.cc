@@ -1,0 +1,187 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/map/map_assembly.h"
+
+#include <algorithm>
+#include <string>
+
+#include "core/map/keyframe_cover.h"
+#include "core/map/landmark_budget.h"
+#include "core/map/map_writer.h"
+#include "core/map/vocabulary.h"
+
+namespace camloc {
+namespace {
+
+constexpr std::size_t kMaxKeyframes = 65535;  // InvertedEntry::keyframe
+constexpr int kMaxBudgetRounds = 24;
+constexpr std::uint32_t kMaxKeyframeGain = 200;
+// What a landmark costs in the file: its record, one descriptor, its share of words and lists.
+constexpr double kRecordBytes = 16, kDescriptorBytes = 32, kListEntryBytes = 1.2, kInvertedEntryBytes = 3, kKeyframeBytes = 40,
+                 kFixedBytes = 2048, kMinWordBytes = 64 * 36;
+
+class MapAssembler {
+ public:
+  MapAssembler(const MapParts& parts, const MapBuildOptions& options) : parts_(parts), options_(options) {}
+  [[nodiscard]] Result<MapData> run();
+  void count(const MapData& map, MapBuildReport* report) const;
+
+ private:
+  [[nodiscard]] std::vector<std::uint32_t> useful_landmarks(std::uint32_t max_landmarks) const;
+  [[nodiscard]] MapData select(const std::vector<std::uint32_t>& kept, std::uint32_t min_gain);
+  void choose_keyframes(const std::vector<std::uint32_t>& kept, std::uint32_t min_gain, MapData* map);
+  void keep_descriptors(const std::vector<std::uint32_t>& kept, MapData* map) const;
+  void add_words(MapData* map) const;
+
+  const MapParts& parts_;
+  const MapBuildOptions& options_;
+  std::uint32_t num_keyframes_before_ = 0;
+  std::uint64_t file_bytes_ = 0;
+};
+
+std::vector<std::uint32_t> MapAssembler::useful_landmarks(std::uint32_t max_landmarks) const {
+  LandmarkBudgetOptions budget;
+  budget.max_landmarks = max_landmarks;
+  budget.min_observations = static_cast<std::uint32_t>(std::max(options_.min_observations, 1));
+  budget.wanted_per_view = static_cast<std::uint32_t>(std::max(options_.landmarks_per_view, 1));
+  return select_landmarks(parts_.views, parts_.landmarks.size(), budget, parts_.worth);
+}
+
+// Landmarks, keyframes and descriptors of a map of the kept landmarks; no words yet.
+MapData MapAssembler::select(const std::vector<std::uint32_t>& kept, std::uint32_t min_gain) {
+  MapData map;
+  map.camera = parts_.camera;
+  map.orb_scale_factor = options_.orb.scale_factor;
+  map.orb_num_levels = static_cast<std::uint32_t>(options_.orb.num_levels);
+  choose_keyframes(kept, min_gain, &map);
+  return map;
+}
+
+// Keyframes that cover the kept landmarks, with their lists; landmarks that only a superfluous view would cover go.
+void MapAssembler::choose_keyframes(const std::vector<std::uint32_t>& kept, std::uint32_t min_gain, MapData* map) {
+  constexpr std::uint32_t kGone = 0xFFFFFFFF;
+  std::vector<std::uint32_t> new_index(parts_.landmarks.size(), kGone);
+  for (std::uint32_t i = 0; i < kept.size(); ++i) new_index[kept[i]] = i;
+  std::vector<std::vector<std::uint32_t>> lists(parts_.views.size());
+  num_keyframes_before_ = 0;
+  for (std::size_t v = 0; v < lists.size(); ++v) {
+    for (const ViewObservation& o : parts_.views[v]) {
+      if (new_index[o.landmark] != kGone) lists[v].push_back(new_index[o.landmark]);
+    }
+    if (!lists[v].empty()) ++num_keyframes_before_;
+  }
+  const KeyframeCover cover = cover_with_keyframes(lists, kept.size(), min_gain);
+  std::vector<std::uint32_t> covered, renumbered(kept.size(), kGone);
+  for (std::uint32_t i = 0; i < kept.size(); ++i) {
+    if (std::binary_search(cover.uncovered.begin(), cover.uncovered.end(), i)) continue;
+    renumbered[i] = static_cast<std::uint32_t>(covered.size());
+    covered.push_back(kept[i]);
+  }
+  for (const std::uint32_t v : cover.views) {
+    MapKeyframe& keyframe = map->keyframes.emplace_back();
+    keyframe.T_map_camera = parts_.poses[v];
+    for (const std::uint32_t i : lists[v]) keyframe.landmarks.push_back(renumbered[i]);
+    std::sort(keyframe.landmarks.begin(), keyframe.landmarks.end());
+  }
+  keep_descriptors(covered, map);
+}
+
+// One descriptor for each landmark; further ones, those that stand for the most observations first, as far as the bytes
+// per landmark allow.
+void MapAssembler::keep_descriptors(const std::vector<std::uint32_t>& kept, MapData* map) const {
+  struct Further {
+    std::uint32_t support, landmark;
+    std::size_t descriptor;
+  };
+  std::vector<Further> further;
+  for (std::uint32_t i = 0; i < kept.size(); ++i) {
+    MapLandmark& landmark = map->landmarks.emplace_back(parts_.landmarks[kept[i]]);
+    for (std::size_t d = 1; d < landmark.descriptors.size(); ++d) further.push_back({parts_.support[kept[i]][d], i, d});
+    landmark.descriptors.resize(1);
+  }
+  std::stable_sort(further.begin(), further.end(), [](const Further& a, const Further& b) { return a.support > b.support; });
+  std::size_t entries = 0;
+  for (const MapKeyframe& keyframe : map->keyframes) entries += keyframe.landmarks.size();
+  const auto n = static_cast<double>(kept.size());
+  const double words = options_.num_words > 0 ? options_.num_words : default_num_words(kept.size());
+  double bytes = kFixedBytes + n * (kRecordBytes + kDescriptorBytes) + words * (kDescriptorBytes + 8) +
+                 static_cast<double>(entries) * (kListEntryBytes + kInvertedEntryBytes) +
+                 static_cast<double>(map->keyframes.size()) * kKeyframeBytes;
+  for (const Further& f : further) {
+    bytes += kDescriptorBytes + kInvertedEntryBytes;
+    if (f.support < 2 || bytes > options_.max_bytes_per_landmark * n) break;
+    map->landmarks[f.landmark].descriptors.push_back(parts_.landmarks[kept[f.landmark]].descriptors[f.descriptor]);
+  }
+}
+
+void MapAssembler::add_words(MapData* map) const {
+  std::vector<Descriptor> descriptors;
+  for (const MapLandmark& landmark : map->landmarks)
+    descriptors.insert(descriptors.end(), landmark.descriptors.begin(), landmark.descriptors.end());
+  map->words =
+      train_vocabulary(descriptors, options_.num_words > 0 ? options_.num_words : default_num_words(map->landmarks.size()));
+  build_inverted_file(map);
+}
+
+void MapAssembler::count(const MapData& map, MapBuildReport* report) const {
+  report->num_landmarks_before = static_cast<std::uint32_t>(parts_.landmarks.size());
+  report->num_landmarks = static_cast<std::uint32_t>(map.landmarks.size());
+  report->num_keyframes_before = num_keyframes_before_;
+  report->num_keyframes = static_cast<std::uint32_t>(map.keyframes.size());
+  report->num_descriptors = 0;
+  for (const MapLandmark& landmark : map.landmarks)
+    report->num_descriptors += static_cast<std::uint32_t>(landmark.descriptors.size());
+  report->num_words = static_cast<std::uint32_t>(map.words.size());
+  report->file_bytes = file_bytes_;
+}
+
+Result<MapData> MapAssembler::run() {
+  std::uint32_t max_landmarks = 0;
+  auto min_gain = static_cast<std::uint32_t>(std::max(options_.min_keyframe_gain, 1));
+  if (options_.max_bytes > 0)
+    max_landmarks = static_cast<std::uint32_t>(static_cast<double>(options_.max_bytes) / options_.max_bytes_per_landmark) + 1;
+  std::vector<std::uint32_t> kept = useful_landmarks(max_landmarks);
+  for (int round = 0; round < kMaxBudgetRounds; ++round) {
+    MapData map = select(kept, min_gain);
+    if (map.landmarks.empty()) {
+      return {ErrorCode::kInvalid,
+              options_.max_bytes > 0
+                  ? "map: no landmark fits into " + std::to_string(options_.max_bytes) + " bytes; raise the byte budget"
+                  : "map: no landmark is left; do the frames show textured surfaces with depth, and are the poses right?"};
+    }
+    if (map.keyframes.size() > kMaxKeyframes)
+      return {ErrorCode::kUnsupported, "map: more than 65535 keyframes; select fewer frames"};
+    add_words(&map);
+    map.pose_sigma_m = parts_.pose_sigma_m;
+    map.pose_sigma_rad = parts_.pose_sigma_rad;
+    const auto bytes = serialize_map(map);
+    if (!bytes.is_ok()) return bytes.status();
+    const auto size = static_cast<double>(bytes.value().size()), num_landmarks = static_cast<double>(map.landmarks.size());
+    // Small maps consist of headers and words: the bytes a landmark mean something from a few thousand on.
+    const bool has_long_lists = size > options_.max_bytes_per_landmark * num_landmarks + kFixedBytes + kMinWordBytes;
+    if (has_long_lists && min_gain < kMaxKeyframeGain) {
+      min_gain += min_gain / 2 + 1;
+    } else if (options_.max_bytes > 0 && bytes.value().size() > options_.max_bytes) {
+      max_landmarks =
+          static_cast<std::uint32_t>(0.98 * static_cast<double>(options_.max_bytes) / size * static_cast<double>(kept.size()));
+      if (max_landmarks == 0) break;
+      kept = useful_landmarks(max_landmarks);
+    } else {
+      file_bytes_ = bytes.value().size();
+      return map;
+    }
+  }
+  return {ErrorCode::kInvalid,
+          "map: " + std::to_string(options_.max_bytes) + " bytes are not enough for a map of these frames; raise the byte budget"};
+}
+
+}  // namespace
+
+Result<MapData> assemble_map(const MapParts& parts, const MapBuildOptions& options, MapBuildReport* report) {
+  MapAssembler assembler(parts, options);
+  Result<MapData> map = assembler.run();
+  if (map.is_ok() && report != nullptr) assembler.count(map.value(), report);
+  return map;
+}
+
+}  // namespace camloc

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/map/map_assembly.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/map/map_writer.h"
+#include "tests/map/room_map.h"
+
+namespace camloc {
+namespace {
+
+using testing::Random;
+
+/// Landmarks on a wall, each seen by a few of the views in a row; descriptors told apart by chance alone.
+struct Wall {
+  MapParts parts;
+  std::vector<std::vector<ViewObservation>> views;
+  std::vector<Rigid3> poses;
+
+  explicit Wall(std::uint32_t num_landmarks, std::uint32_t num_views = 12, std::uint32_t descriptors = 1) {
+    Random random(3);
+    parts.camera = testing::room_camera();
+    parts.pose_sigma_m = 0.0125;
+    views.resize(num_views);
+    for (std::uint32_t v = 0; v < num_views; ++v) poses.push_back(testing::looking({0.1 * v, 0, 1}, {0, 1, 0}));
+    for (std::uint32_t i = 0; i < num_landmarks; ++i) {
+      const std::uint32_t first = i * (num_views - 3) / num_landmarks;
+      parts.landmarks.push_back(testing::room_landmark({0.1 * first, 2, random.uniform(0, 2)}, {0, -2, 0}, &random));
+      for (std::uint32_t d = 1; d < descriptors; ++d) parts.landmarks.back().descriptors.push_back(random.descriptor());
+      parts.support.emplace_back(descriptors, 3U);
+      for (std::uint32_t v = first; v < first + 4; ++v) views[v].push_back({i, static_cast<std::uint8_t>(i % kNumCells)});
+    }
+    parts.views = views;
+    parts.poses = poses;
+  }
+  Wall(const Wall&) = delete;
+  Wall& operator=(const Wall&) = delete;
+};
+
+TEST(MapAssembly, KeepsEverythingWithoutABudget) {
+  const Wall wall(600);
+  MapBuildReport report;
+  const auto map = assemble_map(wall.parts, {}, &report);
+  ASSERT_TRUE(map.is_ok()) << map.status().message();
+  EXPECT_EQ(map.value().landmarks.size(), 600U);
+  EXPECT_EQ(report.num_landmarks, 600U);
+  EXPECT_EQ(report.num_keyframes_before, 12U);
+  EXPECT_EQ(report.num_keyframes, map.value().keyframes.size());
+  EXPECT_LT(map.value().keyframes.size(), 12U);
+  EXPECT_EQ(report.file_bytes, serialize_map(map.value()).value().size());
+  EXPECT_EQ(map.value().pose_sigma_m, 0.0125);
+  std::vector<int> times_seen(600, 0);
+  for (const MapKeyframe& keyframe : map.value().keyframes) {
+    for (const std::uint32_t i : keyframe.landmarks) ++times_seen[i];
+  }
+  EXPECT_EQ(std::count(times_seen.begin(), times_seen.end(), 0), 0);
+}
+
+TEST(MapAssembly, KeepsWhatIsWorthMost) {
+  Wall wall(3000);
+  // Every other landmark would be seen again by many more frames than the views that are left say.
+  for (std::uint32_t i = 0; i < 3000; ++i) wall.parts.worth.push_back(i % 2 == 0 ? 4.0F : 40.0F);
+  for (std::uint32_t i = 0; i < 3000; ++i) wall.parts.landmarks[i].num_observations = i % 2 == 0 ? 4 : 40;
+  MapBuildOptions options;
+  options.max_bytes = 60000;
+  const auto map = assemble_map(wall.parts, options, nullptr);
+  ASSERT_TRUE(map.is_ok()) << map.status().message();
+  EXPECT_LE(serialize_map(map.value()).value().size(), options.max_bytes);
+  const auto& landmarks = map.value().landmarks;
+  const auto num_worthy = std::count_if(landmarks.begin(), landmarks.end(), [](const MapLandmark& l) { return l.num_observations == 40; });
+  EXPECT_GT(static_cast<double>(num_worthy), 0.95 * static_cast<double>(landmarks.size()));
+}
+
+TEST(MapAssembly, LandmarksBelowTheLeastWorthGo) {
+  Wall wall(600);
+  for (std::uint32_t i = 0; i < 600; ++i) wall.parts.worth.push_back(i < 300 ? 1.0F : 2.0F);
+  MapBuildOptions options;
+  options.min_observations = 2;
+  const auto map = assemble_map(wall.parts, options, nullptr);
+  ASSERT_TRUE(map.is_ok());
+  EXPECT_LT(map.value().landmarks.size(), 600U);
+  EXPECT_GE(map.value().landmarks.size(), 300U);
+}
+
+TEST(MapAssembly, SaysWhenTheBudgetIsTooSmall) {
+  const Wall wall(600);
+  MapBuildOptions options;
+  options.max_bytes = 1000;
+  const auto map = assemble_map(wall.parts, options, nullptr);
+  ASSERT_FALSE(map.is_ok());
+  EXPECT_NE(map.status().message().find("raise the byte budget"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace camloc
