@@ -7,10 +7,7 @@
 
 namespace camloc {
 
-void LandmarkSet::assign(const SlamMap& map, std::span<const std::uint32_t> keyframes, std::size_t max_landmarks) {
-  color_ = map.camera().color;
-  log_scale_ = std::log(map.scale_of_level(1));
-  num_levels_ = map.num_levels();
+void LandmarkSet::clear() {
   ids_.clear();
   positions_m_.clear();
   directions_.clear();
@@ -18,6 +15,14 @@ void LandmarkSet::assign(const SlamMap& map, std::span<const std::uint32_t> keyf
   log_max_reference_.clear();
   angles_rad_.clear();
   descriptors_.clear();
+  first_descriptor_.clear();
+}
+
+void LandmarkSet::assign(const SlamMap& map, std::span<const std::uint32_t> keyframes, std::size_t max_landmarks) {
+  color_ = map.camera().color;
+  log_scale_ = std::log(map.scale_of_level(1));
+  num_levels_ = map.num_levels();
+  clear();
   std::vector<std::uint8_t> is_in(map.landmarks().size(), 0);
   for (const std::uint32_t k : keyframes) {
     for (const std::int32_t index : map.keyframe(k).landmark_of_feature) {
@@ -32,8 +37,27 @@ void LandmarkSet::assign(const SlamMap& map, std::span<const std::uint32_t> keyf
       log_min_reference_.push_back(std::log(landmark.min_reference_m));
       log_max_reference_.push_back(std::log(landmark.max_reference_m));
       angles_rad_.push_back(map.keyframe(first.keyframe).view.features.keypoints[first.feature].angle_rad);
+      first_descriptor_.push_back(static_cast<std::uint32_t>(descriptors_.size()));
       descriptors_.push_back(landmark.descriptor);
     }
+  }
+}
+
+void LandmarkSet::assign(const MapData& map, const Intrinsics& color, std::span<const std::uint32_t> landmarks) {
+  color_ = color;
+  log_scale_ = std::log(map.orb_scale_factor);
+  num_levels_ = static_cast<int>(map.orb_num_levels);
+  clear();
+  for (const std::uint32_t index : landmarks) {
+    const MapLandmark& landmark = map.landmarks[index];
+    ids_.push_back(index);
+    positions_m_.push_back(landmark.position_m.cast<double>());
+    directions_.push_back(landmark.direction.cast<double>());
+    log_min_reference_.push_back(std::log(landmark.min_reference_m));
+    log_max_reference_.push_back(std::log(landmark.max_reference_m));
+    angles_rad_.push_back(landmark.angle_rad);
+    first_descriptor_.push_back(static_cast<std::uint32_t>(descriptors_.size()));
+    descriptors_.insert(descriptors_.end(), landmark.descriptors.begin(), landmark.descriptors.end());
   }
 }
 
@@ -62,8 +86,8 @@ std::span<const ProjectedLandmark> LandmarkSet::project(const Rigid3& T_map_came
     out.radius_px = radius_px;
     out.min_level = static_cast<std::uint8_t>(std::clamp(lowest, 0, num_levels_ - 1));
     out.max_level = static_cast<std::uint8_t>(std::clamp(highest, 0, num_levels_ - 1));
-    out.first_descriptor = static_cast<std::uint32_t>(i);
-    out.num_descriptors = 1;
+    out.first_descriptor = first_descriptor_[i];
+    out.num_descriptors = static_cast<std::uint32_t>(descriptors_of(i).size());
   }
   return projected_;
 }

@@ -11,6 +11,7 @@
 
 #include "core/features/matcher.h"
 #include "core/geometry/camera.h"
+#include "core/map/map_data.h"
 #include "core/slam/slam_map.h"
 
 namespace camloc {
@@ -25,16 +26,24 @@ class LandmarkSet {
  public:
   /// Landmarks of the keyframes, in that order, each once, at most `max_landmarks`.
   void assign(const SlamMap& map, std::span<const std::uint32_t> keyframes, std::size_t max_landmarks);
+  /// Landmarks of a finished map, with all their descriptors, for a view of the camera `color`. ids are indices in that map.
+  void assign(const MapData& map, const Intrinsics& color, std::span<const std::uint32_t> landmarks);
   /// Those in view of a camera there; ProjectedLandmark::landmark is a position in this set. Valid until the next call.
   [[nodiscard]] std::span<const ProjectedLandmark> project(const Rigid3& T_map_camera, float radius_px, const ProjectionLimits& limits);
 
   [[nodiscard]] std::size_t size() const { return ids_.size(); }
-  [[nodiscard]] std::uint32_t id(std::size_t i) const { return ids_[i]; }   ///< index in the SlamMap
+  [[nodiscard]] std::uint32_t id(std::size_t i) const { return ids_[i]; }   ///< index in the map
   [[nodiscard]] const Eigen::Vector3d& position_m(std::size_t i) const { return positions_m_[i]; }
   [[nodiscard]] float angle_rad(std::size_t i) const { return angles_rad_[i]; }
   [[nodiscard]] std::span<const Descriptor> descriptors() const { return descriptors_; }
+  [[nodiscard]] std::span<const Descriptor> descriptors_of(std::size_t i) const {
+    const std::size_t end = i + 1 < ids_.size() ? first_descriptor_[i + 1] : descriptors_.size();
+    return std::span(descriptors_).subspan(first_descriptor_[i], end - first_descriptor_[i]);
+  }
 
  private:
+  void clear();
+
   Intrinsics color_;
   float log_scale_ = 0.18F;
   int num_levels_ = 8;
@@ -42,6 +51,7 @@ class LandmarkSet {
   std::vector<Eigen::Vector3d> positions_m_, directions_;
   std::vector<float> log_min_reference_, log_max_reference_, angles_rad_;
   std::vector<Descriptor> descriptors_;
+  std::vector<std::uint32_t> first_descriptor_;
   std::vector<ProjectedLandmark> projected_;
 };
 

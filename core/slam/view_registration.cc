@@ -114,7 +114,9 @@ Registration ViewRegistration::guided(const ViewFeatures& view, LandmarkSet* lan
 Registration ViewRegistration::unguided(const ViewFeatures& view, LandmarkSet* landmarks, std::uint64_t seed) {
   candidates_.clear();
   for (std::size_t i = 0; i < landmarks->size(); ++i) {
-    if (!candidates_.add(landmarks->descriptors()[i], static_cast<std::int32_t>(i), landmarks->angle_rad(i))) break;
+    for (const Descriptor& d : landmarks->descriptors_of(i)) {
+      if (!candidates_.add(d, static_cast<std::int32_t>(i), landmarks->angle_rad(i))) break;
+    }
   }
   fill_pairs(view, *landmarks, candidate_matcher_.match(view.features, candidates_));
   Rigid3 T_map_camera;

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Two maps of one building become one: a second day, or the next floor. Read merge_maps: the second map is localized in the
+// first, bent onto it, its landmarks become those of the first where they are the same point, and what is most useful of both
+// is kept within the budget. The first map's frame and poses stay as they are.
+#pragma once
+
+#include <cstdint>
+
+#include "core/map/map_assembly.h"
+#include "core/slam/landmark_merging.h"
+#include "core/slam/map_alignment.h"
+#include "core/slam/map_registration.h"
+
+namespace camloc {
+
+struct MapMergeOptions {
+  MapRegistrationOptions registration;
+  LandmarkMergingOptions landmarks;
+  MapBuildOptions map;             ///< its ORB settings are taken from the maps
+};
+
+struct MapMergeReport {
+  std::uint32_t num_keyframes_a = 0, num_keyframes_b = 0, num_landmarks_a = 0, num_landmarks_b = 0;
+  MapRegistrationReport registration;
+  std::uint32_t num_localized = 0;      ///< keyframes of B found in A
+  MapAlignmentReport alignment;
+  std::uint32_t num_fused = 0;          ///< landmarks of B that became one of A
+  std::uint32_t num_added = 0;          ///< landmarks of B that are new; both before the budget
+  std::uint32_t num_appearances = 0;    ///< descriptors that fused landmarks gained, before the budget
+  bool is_datum_from_b = false;
+  MapBuildReport map;                   ///< what was kept
+};
+
+/// `b` is a map without words or with; only its camera, landmarks, keyframes and datum count. The result has the name, the camera
+/// and the frame of `a`, and its datum; only where it has none that of `b`, carried over.
+/// Errors: kInvalid when the maps do not fit (other pyramid, quite another focal length, no place in common) or nothing fits the
+/// budget; kUnavailable when `progress` said so. The same maps and options give the same bytes.
+[[nodiscard]] Result<MapData> merge_maps(const MapView& a, const MapData& b, const MapMergeOptions& options,
+                                         const MapMergeProgress& progress, MapMergeReport* report);
+
+}  // namespace camloc
