@@ -16,6 +16,7 @@ void add_eval_command(CLI::App& app, int& exit_code);
 void add_export_command(CLI::App& app, int& exit_code);
 void add_view_command(CLI::App& app, int& exit_code);
 void add_georef_command(CLI::App& app, int& exit_code);
+void add_merge_command(CLI::App& app, int& exit_code);
 
 /// Prints "camloc-map: <message>" on stderr and returns `exit_code`.
 int report_error(const Status& status, int exit_code);
