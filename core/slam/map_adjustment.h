@@ -18,7 +18,7 @@ struct LocalAdjustmentOptions {
   std::size_t num_fixed_keyframes = 16;
   std::uint32_t min_shared = 15;   ///< landmarks that make a keyframe a neighbour
   int max_iterations = 5;
-  double max_pixel_sigmas = 3.5;   ///< sightings farther off afterwards are removed
+  double max_pixel_sigmas = 3.0;   ///< sightings farther off afterwards are removed
 };
 
 /// Adjusts the keyframe, its best neighbours and what they see; other keyframes that see it hold it in place. The first

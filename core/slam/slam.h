@@ -39,7 +39,7 @@ struct SlamOptions {
   int max_lost_views = 10;             ///< after so many in a row a new segment begins
   std::uint32_t min_segment_features = 200;  ///< features with depth that a view needs to begin one
   std::vector<std::uint64_t> required_keyframes;   ///< frames that become keyframes whatever they show, ascending
-  double max_pixel_sigmas = 3.0;       ///< sightings farther off after the final adjustment are removed
+  double max_pixel_sigmas = 2.45;      ///< sightings farther off after the final adjustment are removed
 };
 
 enum class ViewState : std::uint8_t { kTracked, kLost };
