@@ -215,9 +215,12 @@ Status MapRegistration::keep_consistent(std::vector<KeyframeFix>* fixes) const {
   };
   const std::vector<KeyframeFix> group = group_of(*fixes);
   if (group.size() < options_.min_fixes || !is_spread(group)) {
-    return {ErrorCode::kInvalid, "the two maps have no place in common that was seen with certainty (" + std::to_string(group.size()) +
-                                     " keyframes agree on where they are, " + std::to_string(options_.min_fixes) +
-                                     " at places apart are needed); record a stretch that both walks share"};
+    const std::string found = std::to_string(group.size()) + " keyframe" + (group.size() == 1 ? "" : "s");
+    const std::string why = group.size() < options_.min_fixes
+                                ? found + " agree on where they are, " + std::to_string(options_.min_fixes) + " are needed"
+                                : found + " agree on where they are, but all of one spot";
+    return {ErrorCode::kInvalid,
+            "the two maps have no place in common that was seen with certainty (" + why + "); record a stretch that both walks share"};
   }
   std::vector<KeyframeFix> others;
   for (const KeyframeFix& fix : *fixes) {

@@ -127,6 +127,7 @@ std::string format_table(const BuildSummary& s) {
   }
   append(&text, "%-22s%.1f s, %.0f frames/s\n", "time", s.seconds, static_cast<double>(b.num_frames) / std::max(s.seconds, 1e-3));
   if (s.survey) text += "\n" + format_table(*s.survey);
+  if (s.merge) text += format_table(*s.merge);
   append_submaps(s, &text);
   if (s.slam) append_weak_spots(s.slam->weak_spots, &text);
   if (s.is_partial) append(&text, "interrupted: this is a map of the first part; the same command with --resume goes on\n");
@@ -161,6 +162,7 @@ std::string format_json(const BuildSummary& s) {
   json["bytes_per_landmark"] = bytes_per_landmark(s);
   json["pose_consistency"] = {
       {"pairs", b.num_consistency_pairs}, {"sigma_m", s.pose_sigma_m}, {"sigma_deg", degrees(s.pose_sigma_rad)}};
+  if (s.merge) json["merge"] = nlohmann::ordered_json::parse(format_json(*s.merge), nullptr, false);
   json["seconds"] = s.seconds;
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

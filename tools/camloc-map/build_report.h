@@ -15,6 +15,7 @@
 #include "core/slam/slam.h"
 #include "tools/camloc-map/colmap_scale.h"
 #include "tools/camloc-map/georef_report.h"
+#include "tools/camloc-map/merge_pipeline.h"
 #include "tools/camloc-map/walk_check.h"
 
 namespace camloc::map_tool {
@@ -46,6 +47,7 @@ struct BuildSummary {
   std::optional<GeorefSummary> survey;  ///< control points, where there were some
   std::vector<SubmapSummary> submaps;   ///< besides the map itself
   MapBuildReport build;
+  std::optional<MergeSummary> merge;   ///< with the map that was extended; `build` then counts the recording alone
   double pose_sigma_m = 0, pose_sigma_rad = 0;
   double seconds = 0;
 };

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 
+#include "core/map/map_view.h"
 #include "drivers/camera_file.h"
 #include "tools/camloc-map/build_report.h"
 #include "tools/camloc-map/commands.h"
@@ -22,6 +23,7 @@ constexpr const char* kFooter =
     "  camloc-map build --sequence walk/ --camera camera.toml --out building.cmap\n"
     "  camloc-map build --sequence data/kitchen --camera config/cameras/7scenes.toml --poses embedded --exclude ::50 \\\n"
     "      --out kitchen.cmap\n"
+    "  camloc-map build --sequence tuesday/ --camera camera.toml --extend building.cmap --out building.cmap --max-bytes 3MB\n"
     "Without --poses SLAM finds out where the camera was. Ctrl-C finishes a map of what was seen so far, and --resume goes on from\n"
     "there; with --poses it stops without touching an existing map. Exit code: 0 done, 1 failed, 2 wrong usage or configuration.";
 
@@ -44,6 +46,11 @@ Status check_arguments(const BuildArguments& arguments) {
   }
   if (has_poses && !request.survey.points_path.empty())
     return {ErrorCode::kInvalid, "--points: goes with a build without --poses; 'camloc map georef' fits a finished map"};
+  if (!request.extend_path.empty()) {
+    if (!request.trajectory_path.empty())
+      return {ErrorCode::kInvalid, "--trajectory: a recording that extends a map is bent onto it; build it alone for its trajectory"};
+    if (const auto extended = MapView::open(request.extend_path); !extended.is_ok()) return extended.status().with_context("--extend");
+  }
   if (request.is_resumed && !std::filesystem::exists(view_log_path(request.map_path)))
     return {ErrorCode::kInvalid, "--resume: there is no interrupted build of " + request.map_path + "; run it without --resume"};
   return Status::ok();
@@ -95,6 +102,9 @@ void add_build_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--max-bytes", request.map.max_bytes, "Size limit of the file; the most useful landmarks are kept (accepts KB, MB)")
       ->transform(CLI::AsSizeValue(true));
+  command->add_option("--extend", request.extend_path,
+                      "Map of the same building that the recording is added to, with its frame and name; --max-bytes then limits the "
+                      "merged map. --out may be that map itself");
   command->add_option("--name", request.name, "Name of the map, at most 63 bytes (default: the folder's)")
       ->check([](const std::string& name) { return name.size() <= 63 ? std::string() : std::string("longer than 63 bytes"); });
   const std::map<std::string, PoseCamera> cameras{

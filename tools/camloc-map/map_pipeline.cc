@@ -9,6 +9,7 @@
 
 #include "core/map/map_writer.h"
 #include "drivers/frame_source.h"
+#include "tools/camloc-map/merge_pipeline.h"
 #include "tools/camloc-map/view_log.h"
 #include "tools/camloc-map/walk_tracking.h"
 #include "tools/common/interrupt.h"
@@ -39,13 +40,30 @@ std::string segment_path(const std::string& map_path, std::size_t number) {
   return (path.parent_path() / (path.stem().string() + "." + std::to_string(number + 1) + path.extension().string())).string();
 }
 
-Status finish_map(const std::string& name, const std::string& path, const std::optional<WcsDatum>& datum, MapBuilder* builder,
-                  BuildSummary* summary) {
+/// What is going to be merged is chosen from once, after merging.
+MapBuildOptions recording_options(const BuildRequest& request) {
+  MapBuildOptions options = request.map;
+  if (!request.extend_path.empty()) options.max_bytes = 0;
+  return options;
+}
+
+Status extend_map(const BuildRequest& request, const MapData& recorded, BuildSummary* summary) {
+  summary->merge.emplace().map_b = request.frames.sequence;
+  MapMergeOptions options;
+  options.map.max_bytes = request.map.max_bytes;
+  const Status merged = merge_into(request.extend_path, recorded, options, request.map_path, &*summary->merge);
+  return merged.code() == ErrorCode::kUnavailable ? interrupted_status(request.map_path) : merged;
+}
+
+Status finish_map(const BuildRequest& request, const std::string& name, const std::string& path, const std::optional<WcsDatum>& datum,
+                  MapBuilder* builder, BuildSummary* summary) {
   auto map = builder->finish(&summary->build);
   if (!map.is_ok()) return map.status();
   map->name = name;
   map->wcs = datum;
-  if (const Status written = write_map(map.value(), path); !written.is_ok()) return written;
+  const bool is_extension = !request.extend_path.empty() && path == request.map_path;
+  const Status written = is_extension ? extend_map(request, map.value(), summary) : write_map(map.value(), path);
+  if (!written.is_ok()) return written;
   summary->map_path = path;
   summary->pose_sigma_m = map->pose_sigma_m;
   summary->pose_sigma_rad = map->pose_sigma_rad;
@@ -87,7 +105,7 @@ Status build_from_poses(const BuildRequest& request, BuildSummary* summary) {
   summary->num_selected = frames->num_selected;
   summary->num_without_pose = frames->num_without_pose;
   summary->model_scale = frames->scale;
-  MapBuilder builder(request.camera, request.map);
+  MapBuilder builder(request.camera, recording_options(request));
   ProgressLine progress(frames->T_map_camera_of_frame.size());
   if (const Status added = add_frames(frames.value(), &builder, summary, &progress); !added.is_ok()) return added;
   if (InterruptGuard::is_interrupted()) return interrupted_status(request.map_path);
@@ -96,7 +114,7 @@ Status build_from_poses(const BuildRequest& request, BuildSummary* summary) {
                                      summary->first_broken};
   }
   progress.say("choosing landmarks and keyframes, training words ...");
-  return finish_map(request.name.empty() ? folder_name(frames->folder) : request.name, request.map_path, std::nullopt, &builder, summary);
+  return finish_map(request, request.name.empty() ? folder_name(frames->folder) : request.name, request.map_path, std::nullopt, &builder, summary);
 }
 
 // --- SLAM finds the poses --------------------------------------------------------------------------------------------
@@ -135,6 +153,9 @@ Status find_poses(const BuildRequest& request, Slam* slam, Walk* walk, BuildSumm
   auto end = track_walk(walk->pass, slam, &check);
   if (!end.is_ok()) return end.status();
   walk->end = std::move(end).value();
+  // A map that is extended is not touched by half a walk.
+  if (walk->end.is_interrupted && !request.extend_path.empty())
+    return interrupted_status(request.map_path);
   summary->is_partial = walk->end.is_interrupted;
   summary->num_broken = walk->end.num_broken;
   summary->num_without_depth = walk->end.num_without_depth;
@@ -181,7 +202,7 @@ Status map_segment(const BuildRequest& request, const Walk& walk, std::size_t nu
   }
   auto log = ViewLogReader::open(walk.pass.log_path, walk_identity(walk.pass));
   if (!log.is_ok()) return log.status();
-  MapBuilder builder(request.camera, request.map);
+  MapBuilder builder(request.camera, recording_options(request));
   ProgressLine progress(pose_of_frame.size(), "mapping view");
   LoggedView logged;
   for (std::uint64_t done = 0; log->next(&logged).is_ok();) {
@@ -193,7 +214,7 @@ Status map_segment(const BuildRequest& request, const Walk& walk, std::size_t nu
   }
   progress.say("choosing landmarks and keyframes, training words ...");
   const std::string name = request.name.empty() ? folder_name(walk.frames.folder) : request.name;
-  return finish_map(name, segment_path(request.map_path, number), number == 0 ? walk.datum : std::nullopt, &builder, summary);
+  return finish_map(request, name, segment_path(request.map_path, number), number == 0 ? walk.datum : std::nullopt, &builder, summary);
 }
 
 /// One map a segment, the largest at the path the user asked for. Returns an error only for that one.

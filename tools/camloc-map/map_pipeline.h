@@ -23,6 +23,7 @@ struct BuildRequest {
   MapBuildOptions map;
   SlamOptions slam;
   std::string map_path;
+  std::string extend_path;        ///< map that the recording is merged into, see merge_pipeline.h; empty: a map of its own
   std::string name;               ///< of the map; empty: the folder's
   std::string trajectory_path;    ///< where the camera was, TUM format; empty: not written
   bool is_resumed = false;
