@@ -14,6 +14,8 @@
 namespace camloc::map_tool {
 namespace {
 
+constexpr double kToleranceM = 0.10, kBendPerM = 0.01;
+
 std::vector<StampedPose> trajectory_of(const SlamResult& result) {
   std::vector<StampedPose> trajectory;
   for (const SlamPose& pose : result.poses) {
@@ -82,11 +84,19 @@ std::vector<ControlLandmark> control_landmarks(const Survey& survey, const Geore
   return controls;
 }
 
+// A map that no point has held yet may be bent by so much: the points are there to straighten it, and do not lie for that.
+double bend_tolerance_m(const SlamResult& result) {
+  Eigen::AlignedBox3d box;
+  for (const StampedPose& pose : trajectory_of(result)) box.extend(pose.T_world_camera.translation);
+  return std::max(kToleranceM, kBendPerM * box.diagonal().norm());
+}
+
 GeorefFit fit_survey(const SurveyRequest& request, const Survey& survey, const RgbdCamera& camera, const SlamResult& result,
-                     std::vector<std::string>* left_out) {
+                     double tolerance_m, std::vector<std::string>* left_out) {
   const ResolvedObservations resolved = resolve(survey, camera, result);
   *left_out = resolved.left_out;
   GeorefOptions options;
+  options.tolerance_m = tolerance_m;
   options.is_excluding_suspects = request.is_excluding_suspects;
   std::vector<Rigid3> cameras;
   for (const StampedPose& pose : trajectory_of(result)) cameras.push_back(pose.T_world_camera);
@@ -152,10 +162,10 @@ std::optional<WcsDatum> adjust_to_survey(const SurveyRequest& request, const Sur
                                          SlamResult* result, GeorefSummary* summary) {
   summary->points_path = request.points_path;
   summary->observed_path = request.observed_path;
-  summary->fit = fit_survey(request, survey, camera, *result, &summary->left_out);
+  summary->fit = fit_survey(request, survey, camera, *result, bend_tolerance_m(*result), &summary->left_out);
   if (!summary->fit.problem.empty()) return std::nullopt;
   *result = slam->adjust_to(control_landmarks(survey, summary->fit, *slam));
-  summary->fit = fit_survey(request, survey, camera, *result, &summary->left_out);
+  summary->fit = fit_survey(request, survey, camera, *result, kToleranceM, &summary->left_out);
   if (!summary->fit.problem.empty()) return std::nullopt;
   return summary->fit.datum;
 }
