@@ -85,6 +85,17 @@ TEST(WalkCheck, ACoveredDepthCameraIsNoDepth) {
   EXPECT_NE(verdict.message().find("no feature has depth in 40 of 40"), std::string::npos) << verdict.message();
 }
 
+TEST(WalkCheck, FramesWithoutFeaturesSayNothingAboutDepth) {
+  WalkCheck check(test_camera());
+  for (std::uint64_t i = 0; i < 40; ++i) {
+    check.see_view(i, stamp_ns(i), 0, 0);
+    check.see_report(ViewReport{});
+  }
+  EXPECT_TRUE(check.early_verdict().is_ok());
+  ASSERT_EQ(check.weak_spots().size(), 1U);
+  EXPECT_EQ(check.weak_spots()[0].what, "little texture");
+}
+
 TEST(WalkCheck, AFewFramesWithoutDepthAreForgiven) {
   WalkCheck check(test_camera());
   for (std::uint64_t i = 0; i < 40; ++i) see(&check, i, i < 20 ? 65535 : 0, i < 20 ? 0 : 300);

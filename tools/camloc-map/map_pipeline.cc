@@ -165,9 +165,14 @@ Status find_poses(const BuildRequest& request, Slam* slam, Walk* walk, BuildSumm
     progress.say("adjusting all keyframes and landmarks, iteration " + std::to_string(iteration) + " ...");
     return true;
   });
-  if (walk->result.segments.empty())
-    return {ErrorCode::kInvalid, request.frames.sequence + ": no frame shows enough texture with depth to begin a map"};
-  if (const Status usable = check.verdict(walk->result); !usable.is_ok()) return usable;
+  Status usable = check.verdict(walk->result);
+  if (usable.is_ok() && walk->result.segments.empty())
+    usable = {ErrorCode::kInvalid, request.frames.sequence + ": no frame shows enough texture with depth to begin a map"};
+  if (!usable.is_ok()) {
+    if (walk->end.is_interrupted) return interrupted_status(request.map_path);   // too early to tell, --resume will
+    std::filesystem::remove(walk->pass.log_path);
+    return usable;
+  }
   summary->slam = SlamSummary{slam->counts(), walk->result.segments.front().fit, check.weak_spots(), check.num_stamp_jumps(),
                               walk->end.num_resumed, "", std::nullopt};
   return Status::ok();

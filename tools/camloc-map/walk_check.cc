@@ -58,7 +58,7 @@ void WalkCheck::see_view(std::uint64_t frame, std::int64_t stamp_ns, std::size_t
   note.num_with_depth = num_with_depth;
   note.is_jump = num_seen_ > 0 && 1e-9 * static_cast<double>(stamp_ns - last_stamp_ns_) > kMaxGapS;
   if (note.is_jump) ++num_jumps_;
-  if (num_with_depth == 0) ++num_without_depth_;
+  if (num_features > 0 && num_with_depth == 0) ++num_without_depth_;
   last_stamp_ns_ = stamp_ns;
   ++num_seen_;
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 
 #include "drivers/camera_file.h"
 #include "drivers/frame_source.h"
@@ -47,6 +48,7 @@ class Pass {
       ++end_.num_resumed;
     }
     *log_bytes = reader->size_bytes();
+    end_.is_interrupted = InterruptGuard::is_interrupted();
     return Status::ok();
   }
 
@@ -71,6 +73,7 @@ class Pass {
     return log.flush();
   }
 
+  [[nodiscard]] bool is_interrupted() const { return end_.is_interrupted; }
   [[nodiscard]] WalkEnd end() { return std::move(end_); }
 
  private:
@@ -120,11 +123,16 @@ Result<WalkEnd> track_walk(const WalkRequest& request, Slam* slam, WalkCheck* ch
   std::uint64_t log_bytes = 0;
   if (request.is_resumed) {
     if (const Status replayed = pass.replay(&log_bytes); !replayed.is_ok()) return replayed;
+    if (pass.is_interrupted()) return pass.end();   // the rest of the log is for the next time
   }
   auto log = request.is_resumed ? ViewLogWriter::append(request.log_path, log_bytes)
                                 : ViewLogWriter::create(request.log_path, walk_identity(request));
   if (!log.is_ok()) return log.status();
-  if (const Status done = pass.run(std::move(log).value()); !done.is_ok()) return done;
+  if (const Status done = pass.run(std::move(log).value()); !done.is_ok()) {
+    // What is wrong with the recording stays wrong; a full disk does not.
+    if (done.code() == ErrorCode::kInvalid) std::filesystem::remove(request.log_path);
+    return done;
+  }
   return pass.end();
 }
 
