@@ -29,6 +29,11 @@ Status interrupted_status(const std::string& map_path) {
   return {ErrorCode::kIo, "interrupted; " + map_path + (is_there ? " is unchanged" : " was not written")};
 }
 
+Status all_broken_status(const BuildSummary& summary) {
+  return {ErrorCode::kCorrupt, "none of " + std::to_string(summary.num_broken) + " frames could be read, the first because of " +
+                                   summary.first_broken};
+}
+
 std::string folder_name(const std::string& folder) {
   return std::filesystem::weakly_canonical(folder).filename().string().substr(0, 63);
 }
@@ -109,10 +114,7 @@ Status build_from_poses(const BuildRequest& request, BuildSummary* summary) {
   ProgressLine progress(frames->T_map_camera_of_frame.size());
   if (const Status added = add_frames(frames.value(), &builder, summary, &progress); !added.is_ok()) return added;
   if (InterruptGuard::is_interrupted()) return interrupted_status(request.map_path);
-  if (summary->num_broken == frames->T_map_camera_of_frame.size()) {
-    return {ErrorCode::kCorrupt, "none of " + std::to_string(summary->num_broken) + " frames could be read, the first because of " +
-                                     summary->first_broken};
-  }
+  if (summary->num_broken == frames->T_map_camera_of_frame.size()) return all_broken_status(*summary);
   progress.say("choosing landmarks and keyframes, training words ...");
   return finish_map(request, request.name.empty() ? folder_name(frames->folder) : request.name, request.map_path, std::nullopt, &builder, summary);
 }
@@ -166,6 +168,7 @@ Status find_poses(const BuildRequest& request, Slam* slam, Walk* walk, BuildSumm
     return true;
   });
   Status usable = check.verdict(walk->result);
+  if (summary->num_broken == walk->frames.num_selected) usable = all_broken_status(*summary);
   if (usable.is_ok() && walk->result.segments.empty())
     usable = {ErrorCode::kInvalid, request.frames.sequence + ": no frame shows enough texture with depth to begin a map"};
   if (!usable.is_ok()) {

@@ -130,7 +130,7 @@ Result<WalkEnd> track_walk(const WalkRequest& request, Slam* slam, WalkCheck* ch
   if (!log.is_ok()) return log.status();
   if (const Status done = pass.run(std::move(log).value()); !done.is_ok()) {
     // What is wrong with the recording stays wrong; a full disk does not.
-    if (done.code() == ErrorCode::kInvalid) std::filesystem::remove(request.log_path);
+    if (done.code() == ErrorCode::kInvalid || slam->counts().num_views == 0) std::filesystem::remove(request.log_path);
     return done;
   }
   return pass.end();
