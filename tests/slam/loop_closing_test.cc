@@ -173,5 +173,25 @@ TEST(LoopClosing, SegmentsThatReallyMeetAreJoined) {
   EXPECT_LT(trajectory_error_m(result, result.segments[0].id, walk.T_world_camera), 0.03);
 }
 
+// Nothing says how far apart the first and the third segment lie; many views over a few metres do.
+TEST(LoopClosing, ASegmentJoinsAnOlderOneWhenManyViewsAgree) {
+  World world = testing::make_hall();
+  std::mt19937_64 rng(41);
+  add_room(rng, {40, -2.5, 0}, {46, 2.5, 2.8}, 90, &world);
+  Viewer viewer(world);
+  Slam slam(viewer.camera(), walk_options());
+  std::vector<Rigid3> poses;
+  for (int i = 0; i < 60; ++i) poses.push_back(looking({0.1 * i, 0, 1.5}, 0.5 + 0.3 * std::sin(0.1 * i)));
+  for (int i = 0; i < 35; ++i) poses.push_back(looking({42 + 0.02 * i, 0, 1.5}, 0.02 * i));
+  for (int i = 0; i < 95; ++i) poses.push_back(looking({9.5 - 0.1 * i, 0.2, 1.5}, 0.5 + 0.3 * std::sin(0.1 * i)));
+  const Walk walk = walk_through(&viewer, poses, &slam);
+  const SlamResult result = slam.finish();
+  EXPECT_EQ(slam.counts().num_segments, 3U);
+  EXPECT_EQ(slam.counts().num_joined, 1U);
+  ASSERT_EQ(result.segments.size(), 2U);
+  EXPECT_GE(result.segments[0].num_views, 140U);
+  for (const SlamResult::Segment& segment : result.segments) EXPECT_LT(trajectory_error_m(result, segment.id, walk.T_world_camera), 0.03);
+}
+
 }  // namespace
 }  // namespace camloc
