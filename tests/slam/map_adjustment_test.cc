@@ -63,6 +63,19 @@ TEST(MapAdjustment, LocalAdjustmentKeepsTheFirstKeyframeAndMendsTheOthers) {
   EXPECT_LT(d.error_m(), 0.006);
 }
 
+// Also where keyframes outside the window would hold it.
+TEST(MapAdjustment, TheFirstKeyframeOfTheSegmentNeverMoves) {
+  Disturbed d;
+  LocalAdjustmentOptions options;
+  options.num_free_keyframes = 3;
+  const Rigid3 first = d.map.keyframe(0).view.T_map_camera, second = d.map.keyframe(1).view.T_map_camera;
+  adjust_locally(bundle_for(d.viewer.camera()), options, 0, &d.map);
+  adjust_locally(bundle_for(d.viewer.camera()), options, 1, &d.map);
+  EXPECT_EQ(d.map.keyframe(0).view.T_map_camera.translation, first.translation);
+  EXPECT_EQ(d.map.keyframe(0).view.T_map_camera.rotation.coeffs(), first.rotation.coeffs());
+  EXPECT_NE(d.map.keyframe(1).view.T_map_camera.translation, second.translation);
+}
+
 TEST(MapAdjustment, KeyframesOutsideTheWindowStay) {
   Disturbed d;
   LocalAdjustmentOptions options;
