@@ -3,6 +3,8 @@
 #include "core/map/map_assembly.h"
 
 #include <algorithm>
+#include <limits>
+#include <optional>
 #include <string>
 
 #include "core/map/keyframe_cover.h"
@@ -15,10 +17,18 @@ namespace {
 
 constexpr std::size_t kMaxKeyframes = 65535;  // InvertedEntry::keyframe
 constexpr int kMaxBudgetRounds = 24;
+constexpr int kMaxFills = 4;
+constexpr double kFullShare = 0.97, kNextShare = 0.98;   // of the budget: full enough, and what the next round aims at
 constexpr std::uint32_t kMaxKeyframeGain = 200;
 // What a landmark costs in the file: its record, one descriptor, its share of words and lists.
 constexpr double kRecordBytes = 16, kDescriptorBytes = 32, kListEntryBytes = 1.2, kInvertedEntryBytes = 3, kKeyframeBytes = 40,
-                 kFixedBytes = 2048, kMinWordBytes = 64 * 36;
+                 kFixedBytes = 2048, kMinWordBytes = 64 * 36, kFurtherBytes = kDescriptorBytes + kInvertedEntryBytes;
+
+std::size_t num_descriptors_of(const MapData& map) {
+  std::size_t count = 0;
+  for (const MapLandmark& landmark : map.landmarks) count += landmark.descriptors.size();
+  return count;
+}
 
 class MapAssembler {
  public:
@@ -32,6 +42,8 @@ class MapAssembler {
   void choose_keyframes(const std::vector<std::uint32_t>& kept, std::uint32_t min_gain, MapData* map);
   void keep_descriptors(const std::vector<std::uint32_t>& kept, MapData* map) const;
   void add_words(MapData* map) const;
+  [[nodiscard]] bool has_long_lists(const MapData& map, double file_bytes) const;
+  [[nodiscard]] Status nothing_left() const;
 
   const MapParts& parts_;
   const MapBuildOptions& options_;
@@ -107,9 +119,11 @@ void MapAssembler::keep_descriptors(const std::vector<std::uint32_t>& kept, MapD
   double bytes = kFixedBytes + n * (kRecordBytes + kDescriptorBytes) + words * (kDescriptorBytes + 8) +
                  static_cast<double>(entries) * (kListEntryBytes + kInvertedEntryBytes) +
                  static_cast<double>(map->keyframes.size()) * kKeyframeBytes;
+  double set_aside = options_.appearance_share * static_cast<double>(options_.max_bytes);
+  if (options_.appearance_share > 0 && options_.max_bytes == 0) set_aside = std::numeric_limits<double>::infinity();
   for (const Further& f : further) {
-    bytes += kDescriptorBytes + kInvertedEntryBytes;
-    if (f.support < 2 || bytes > options_.max_bytes_per_landmark * n) break;
+    bytes += kFurtherBytes;
+    if (f.support < 2 || bytes > options_.max_bytes_per_landmark * n + set_aside) break;
     map->landmarks[f.landmark].descriptors.push_back(parts_.landmarks[kept[f.landmark]].descriptors[f.descriptor]);
   }
 }
@@ -128,27 +142,25 @@ void MapAssembler::count(const MapData& map, MapBuildReport* report) const {
   report->num_landmarks = static_cast<std::uint32_t>(map.landmarks.size());
   report->num_keyframes_before = num_keyframes_before_;
   report->num_keyframes = static_cast<std::uint32_t>(map.keyframes.size());
-  report->num_descriptors = 0;
-  for (const MapLandmark& landmark : map.landmarks)
-    report->num_descriptors += static_cast<std::uint32_t>(landmark.descriptors.size());
+  report->num_descriptors = static_cast<std::uint32_t>(num_descriptors_of(map));
   report->num_words = static_cast<std::uint32_t>(map.words.size());
   report->file_bytes = file_bytes_;
 }
 
+// Rounds of choosing and weighing: fewer keyframes while their lists are too long, fewer landmarks while the file is too large,
+// and more of them where much of the budget is left over.
 Result<MapData> MapAssembler::run() {
+  const auto max_bytes = static_cast<double>(options_.max_bytes);
   std::uint32_t max_landmarks = 0;
   auto min_gain = static_cast<std::uint32_t>(std::max(options_.min_keyframe_gain, 1));
   if (options_.max_bytes > 0)
-    max_landmarks = static_cast<std::uint32_t>(static_cast<double>(options_.max_bytes) / options_.max_bytes_per_landmark) + 1;
+    max_landmarks = static_cast<std::uint32_t>((1 - options_.appearance_share) * max_bytes / options_.max_bytes_per_landmark) + 1;
   std::vector<std::uint32_t> kept = useful_landmarks(max_landmarks);
+  std::optional<MapData> fitting;
+  int num_fills = 0;
   for (int round = 0; round < kMaxBudgetRounds; ++round) {
     MapData map = select(kept, min_gain);
-    if (map.landmarks.empty()) {
-      return {ErrorCode::kInvalid,
-              options_.max_bytes > 0
-                  ? "map: no landmark fits into " + std::to_string(options_.max_bytes) + " bytes; raise the byte budget"
-                  : "map: no landmark is left; do the frames show textured surfaces with depth, and are the poses right?"};
-    }
+    if (map.landmarks.empty()) return nothing_left();
     if (map.keyframes.size() > kMaxKeyframes)
       return {ErrorCode::kUnsupported, "map: more than 65535 keyframes; select fewer frames"};
     add_words(&map);
@@ -156,23 +168,40 @@ Result<MapData> MapAssembler::run() {
     map.pose_sigma_rad = parts_.pose_sigma_rad;
     const auto bytes = serialize_map(map);
     if (!bytes.is_ok()) return bytes.status();
-    const auto size = static_cast<double>(bytes.value().size()), num_landmarks = static_cast<double>(map.landmarks.size());
-    // Small maps consist of headers and words: the bytes a landmark mean something from a few thousand on.
-    const bool has_long_lists = size > options_.max_bytes_per_landmark * num_landmarks + kFixedBytes + kMinWordBytes;
-    if (has_long_lists && min_gain < kMaxKeyframeGain) {
+    const auto size = static_cast<double>(bytes.value().size());
+    if (has_long_lists(map, size) && min_gain < kMaxKeyframeGain) {
       min_gain += min_gain / 2 + 1;
-    } else if (options_.max_bytes > 0 && bytes.value().size() > options_.max_bytes) {
-      max_landmarks =
-          static_cast<std::uint32_t>(0.98 * static_cast<double>(options_.max_bytes) / size * static_cast<double>(kept.size()));
-      if (max_landmarks == 0) break;
-      kept = useful_landmarks(max_landmarks);
-    } else {
-      file_bytes_ = bytes.value().size();
-      return map;
+      continue;
     }
+    const bool is_too_large = options_.max_bytes > 0 && bytes.value().size() > options_.max_bytes;
+    if (!is_too_large && (!fitting || bytes.value().size() > file_bytes_)) {
+      file_bytes_ = bytes.value().size();
+      const bool is_cut = max_landmarks > 0 && kept.size() >= max_landmarks;
+      if (!options_.fills_budget || !is_cut || size > kFullShare * max_bytes) return map;
+      fitting = std::move(map);
+    }
+    if (fitting && ++num_fills > kMaxFills) break;
+    max_landmarks = static_cast<std::uint32_t>(kNextShare * max_bytes / size * static_cast<double>(kept.size()));
+    if (max_landmarks == 0) break;
+    kept = useful_landmarks(max_landmarks);
   }
+  if (fitting) return std::move(*fitting);
   return {ErrorCode::kInvalid,
           "map: " + std::to_string(options_.max_bytes) + " bytes are not enough for a map of these frames; raise the byte budget"};
+}
+
+Status MapAssembler::nothing_left() const {
+  return {ErrorCode::kInvalid,
+          options_.max_bytes > 0
+              ? "map: no landmark fits into " + std::to_string(options_.max_bytes) + " bytes; raise the byte budget"
+              : "map: no landmark is left; do the frames show textured surfaces with depth, and are the poses right?"};
+}
+
+// Small maps consist of headers and words: the bytes a landmark mean something from a few thousand on.
+bool MapAssembler::has_long_lists(const MapData& map, double file_bytes) const {
+  const auto num_landmarks = static_cast<double>(map.landmarks.size());
+  const double further = options_.appearance_share > 0 ? kFurtherBytes * (static_cast<double>(num_descriptors_of(map)) - num_landmarks) : 0;
+  return file_bytes - further > options_.max_bytes_per_landmark * num_landmarks + kFixedBytes + kMinWordBytes;
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ void add_views(const MapData& map, const std::vector<std::uint32_t>& new_index, 
   }
 }
 
-Union unite(const MapData& a, const MapData& b, const LandmarkMergingOptions& options, MapMergeReport* report) {
+Union unite(const MapData& a, const MapData& b, const MapMergeOptions& options, MapMergeReport* report) {
   Union all;
   MapParts& parts = all.parts;
   parts.landmarks = a.landmarks;
@@ -75,13 +75,13 @@ Union unite(const MapData& a, const MapData& b, const LandmarkMergingOptions& op
     index_a[i] = i;
     parts.support.push_back(guess_support(a.landmarks[i]));
   }
-  const std::vector<SameLandmark> same = find_same_landmarks(a, b, options);
+  const std::vector<SameLandmark> same = find_same_landmarks(a, b, options.landmarks);
   std::size_t next_same = 0;
   for (std::uint32_t i = 0; i < b.landmarks.size(); ++i) {
     const std::vector<std::uint32_t> support = guess_support(b.landmarks[i]);
     if (next_same < same.size() && same[next_same].b == i) {
       index_b[i] = same[next_same++].a;
-      report->num_appearances += merge_landmark(b.landmarks[i], support, options, &parts.landmarks[index_b[i]], &parts.support[index_b[i]]);
+      report->num_appearances += merge_landmark(b.landmarks[i], support, options.landmarks, &parts.landmarks[index_b[i]], &parts.support[index_b[i]]);
       continue;
     }
     index_b[i] = static_cast<std::uint32_t>(parts.landmarks.size());
@@ -93,6 +93,7 @@ Union unite(const MapData& a, const MapData& b, const LandmarkMergingOptions& op
   add_views(a, index_a, &all);
   add_views(b, index_b, &all);
   for (const MapLandmark& landmark : parts.landmarks) parts.worth.push_back(static_cast<float>(landmark.num_observations));
+  for (const SameLandmark& confirmed : same) parts.worth[confirmed.a] *= static_cast<float>(options.confirmed_worth);
   return all;
 }
 
@@ -130,7 +131,7 @@ Result<MapData> merge_maps(const MapView& a, const MapData& b, const MapMergeOpt
   adopt_focal_length(first.camera, &second);
   report->alignment = align_map(fixes.value(), &second);
 
-  Union all = unite(first, second, options.landmarks, report);
+  Union all = unite(first, second, options, report);
   all.parts.camera = first.camera;
   all.parts.views = all.views;
   all.parts.poses = all.poses;

@@ -85,6 +85,44 @@ TEST(MapAssembly, LandmarksBelowTheLeastWorthGo) {
   EXPECT_GE(map.value().landmarks.size(), 300U);
 }
 
+TEST(MapAssembly, SetsBytesAsideForFurtherAppearances) {
+  const Wall wall(3000, 12, 2);
+  MapBuildOptions options;
+  options.max_bytes = 60000;
+  const auto descriptors_of = [](const MapData& map) {
+    std::size_t count = 0;
+    for (const MapLandmark& l : map.landmarks) count += l.descriptors.size();
+    return static_cast<double>(count);
+  };
+  const auto without = assemble_map(wall.parts, options, nullptr);
+  options.appearance_share = 0.2;
+  const auto with = assemble_map(wall.parts, options, nullptr);
+  ASSERT_TRUE(without.is_ok() && with.is_ok());
+  EXPECT_LE(serialize_map(with.value()).value().size(), options.max_bytes);
+  EXPECT_LT(with.value().landmarks.size(), without.value().landmarks.size());
+  EXPECT_GT(descriptors_of(with.value()), 1.2 * static_cast<double>(with.value().landmarks.size()));
+  options.max_bytes = 0;
+  const auto unlimited = assemble_map(wall.parts, options, nullptr);
+  ASSERT_TRUE(unlimited.is_ok());
+  EXPECT_EQ(descriptors_of(unlimited.value()), 2.0 * static_cast<double>(unlimited.value().landmarks.size()));
+}
+
+TEST(MapAssembly, FillsTheBudgetWhereAskedTo) {
+  const Wall wall(3000);
+  MapBuildOptions options;
+  options.max_bytes = 60000;
+  options.max_bytes_per_landmark = 75;   // a cautious guess leaves much of the budget
+  const auto cautious = assemble_map(wall.parts, options, nullptr);
+  options.fills_budget = true;
+  MapBuildReport report;
+  const auto filled = assemble_map(wall.parts, options, &report);
+  ASSERT_TRUE(cautious.is_ok() && filled.is_ok());
+  EXPECT_GT(filled.value().landmarks.size(), cautious.value().landmarks.size());
+  EXPECT_LE(report.file_bytes, options.max_bytes);
+  EXPECT_GE(report.file_bytes, 0.95 * static_cast<double>(options.max_bytes));
+  EXPECT_EQ(report.file_bytes, serialize_map(filled.value()).value().size());
+}
+
 TEST(MapAssembly, SaysWhenTheBudgetIsTooSmall) {
   const Wall wall(600);
   MapBuildOptions options;
