@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The camloc authors
+# SPDX-License-Identifier: Apache-2.0
+"""Maps of real Kinect walks without their poses: nothing lost, trajectories and surfaces true, good to localize in, depth wins.
+
+The reference of the kitchen is itself good to about 4 cm only; that of the office is motion capture.
+"""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+CAMLOC = os.environ["CAMLOC"]
+CAMLOC_MAP = os.environ["CAMLOC_MAP"]
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+CAMERAS = SOURCE / "config" / "cameras"
+DATA = pathlib.Path(os.environ.get("CAMLOC_DATA", SOURCE.parent / "shared" / "data"))
+SKIPPED = 77
+
+
+def run(*arguments):
+    done = subprocess.run([str(a) for a in arguments], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, f"{arguments}: exit {done.returncode}: {done.stderr}"
+    return done.stdout
+
+
+class Walk:
+    """A map of a recording, made without its poses, and what it is worth."""
+
+    def __init__(self, folder, camera, work, *options):
+        self.sequence, self.camera = DATA / folder, CAMERAS / camera
+        name = "_".join([folder, *options]).replace("-", "")
+        self.map, self.trajectory = work / f"{name}.cmap", work / f"{name}.tum"
+        self.summary = json.loads(run(CAMLOC_MAP, "build", "--sequence", self.sequence, "--camera", self.camera, "--out", self.map,
+                                      "--trajectory", self.trajectory, "--json", *options))
+
+    def trajectory_error_m(self):
+        errors = json.loads(run(CAMLOC, "eval", "--estimate", self.trajectory, "--reference", self.sequence, "--align", "se3",
+                                "--camera", self.camera, "--json"))
+        return errors["translation_m"]["rmse"]
+
+    def surface(self):
+        """Landmarks against the cloud that true poses and raw depth make."""
+        return json.loads(run(CAMLOC_MAP, "eval", self.map, "--reference-sequence", self.sequence, "--camera", self.camera,
+                              "--trajectory", self.trajectory, "--json"))
+
+    def localize_m(self, folder, work):
+        """Median error of another recording in this map, aligned by the walk itself."""
+        found = work / "found.tum"
+        run(CAMLOC, "localize", "--map", self.map, "--sequence", DATA / folder, "--camera", self.camera, "--mode", "single", "--out", found)
+        return json.loads(run(CAMLOC, "eval", "--estimate", found, "--reference", DATA / folder, "--align-by", self.trajectory,
+                              "--align-reference", self.sequence, "--json"))
+
+
+def mean_to_point_m(report):
+    return report["distances"]["landmark_to_point"]["mean_m"]
+
+
+def main():
+    if not (DATA / "kitchen").is_dir():
+        print(f"skipped: no recorded sequences in {DATA}")
+        sys.exit(SKIPPED)
+    with tempfile.TemporaryDirectory(prefix="camloc_") as folder:
+        work = pathlib.Path(folder)
+        kitchen = Walk("kitchen", "7scenes.toml", work)
+        assert kitchen.summary["slam"]["lost"] == 0, kitchen.summary
+        assert kitchen.trajectory_error_m() <= 0.05
+        surface = kitchen.surface()
+        assert mean_to_point_m(surface) <= 0.01, surface
+
+        room = Walk("tum_fr1_rpy", "tum-fr1.toml", work)
+        assert room.summary["slam"]["lost"] == 0, room.summary
+        assert room.trajectory_error_m() <= 0.03
+        errors = room.localize_m("tum_fr1_xyz", work)
+        assert errors["within"]["5cm_5deg"] == 1.0 and errors["translation_m"]["median"] <= 0.02, errors
+
+        flat = Walk("tum_fr1_rpy", "tum-fr1.toml", work, "--tracking", "2d", "--ba", "2d")
+        assert flat.trajectory_error_m() > room.trajectory_error_m()
+        assert mean_to_point_m(flat.surface()) > mean_to_point_m(room.surface())
+
+
+if __name__ == "__main__":
+    main()
