@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kMaxKeyframes = 65535;  // InvertedEntry::keyframe
 constexpr int kMaxBudgetRounds = 24;
 constexpr int kMaxFills = 4;
-constexpr double kFullShare = 0.97, kNextShare = 0.98;   // of the budget: full enough, and what the next round aims at
+constexpr double kFullShare = 0.97, kNextShare = 0.98;  // of the budget: full enough, and what the next round aims at
 constexpr std::uint32_t kMaxKeyframeGain = 200;
 // What a landmark costs in the file: its record, one descriptor, its share of words and lists.
 constexpr double kRecordBytes = 16, kDescriptorBytes = 32, kListEntryBytes = 1.2, kInvertedEntryBytes = 3, kKeyframeBytes = 40,
@@ -186,8 +186,8 @@ Result<MapData> MapAssembler::run() {
     kept = useful_landmarks(max_landmarks);
   }
   if (fitting) return std::move(*fitting);
-  return {ErrorCode::kInvalid,
-          "map: " + std::to_string(options_.max_bytes) + " bytes are not enough for a map of these frames; raise the byte budget"};
+  return {ErrorCode::kInvalid, "map: " + std::to_string(options_.max_bytes) +
+                                   " bytes are not enough for a map of these frames; raise the byte budget"};
 }
 
 Status MapAssembler::nothing_left() const {
@@ -200,7 +200,8 @@ Status MapAssembler::nothing_left() const {
 // Small maps consist of headers and words: the bytes a landmark mean something from a few thousand on.
 bool MapAssembler::has_long_lists(const MapData& map, double file_bytes) const {
   const auto num_landmarks = static_cast<double>(map.landmarks.size());
-  const double further = options_.appearance_share > 0 ? kFurtherBytes * (static_cast<double>(num_descriptors_of(map)) - num_landmarks) : 0;
+  const double further =
+      options_.appearance_share > 0 ? kFurtherBytes * (static_cast<double>(num_descriptors_of(map)) - num_landmarks) : 0;
   return file_bytes - further > options_.max_bytes_per_landmark * num_landmarks + kFixedBytes + kMinWordBytes;
 }
 

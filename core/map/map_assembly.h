@@ -27,9 +27,9 @@ struct MapBuildOptions {
   int min_observations = 2;            ///< landmarks seen by fewer frames are dropped where others are enough
   int landmarks_per_view = 1000;       ///< a landmark is not needed where all views that see it have this many
   double max_bytes_per_landmark = 60;  ///< of the whole file: bounds the further descriptors and the keyframes' lists
-  double appearance_share = 0;         ///< of the file, set aside for further descriptors; without max_bytes any > 0 keeps them all
-  bool fills_budget = false;           ///< choose again, more landmarks, where the first choice leaves much of max_bytes
-  int min_keyframe_gain = 20;          ///< a view that alone sees fewer landmarks is no keyframe; those landmarks go
+  double appearance_share = 0;  ///< of the file, set aside for further descriptors; without max_bytes any > 0 keeps them all
+  bool fills_budget = false;    ///< choose again, more landmarks, where the first choice leaves much of max_bytes
+  int min_keyframe_gain = 20;   ///< a view that alone sees fewer landmarks is no keyframe; those landmarks go
 };
 
 struct MapBuildReport {
@@ -45,11 +45,11 @@ struct MapBuildReport {
 /// What a map is made of. Views and poses have the same length.
 struct MapParts {
   RgbdCamera camera;
-  double pose_sigma_m = 0, pose_sigma_rad = 0;        ///< see MapData
-  std::vector<MapLandmark> landmarks;                 ///< descriptors ordered by support
-  std::vector<std::vector<std::uint32_t>> support;    ///< observations behind each of their descriptors
-  std::span<const std::vector<ViewObservation>> views;   ///< a landmark at most once a view
-  std::span<const Rigid3> poses;                      ///< T_map_camera of each view
+  double pose_sigma_m = 0, pose_sigma_rad = 0;          ///< see MapData
+  std::vector<MapLandmark> landmarks;                   ///< descriptors ordered by support
+  std::vector<std::vector<std::uint32_t>> support;      ///< observations behind each of their descriptors
+  std::span<const std::vector<ViewObservation>> views;  ///< a landmark at most once a view
+  std::span<const Rigid3> poses;                        ///< T_map_camera of each view
   /// How many frames would see each landmark again; empty: as many as the views that saw it.
   std::vector<float> worth;
 };

@@ -13,8 +13,8 @@
 namespace camloc {
 
 struct KeyframeView {
-  ViewFeatures view;                       ///< one feature a landmark, with its first descriptor
-  std::vector<std::uint32_t> landmarks;    ///< of each feature
+  ViewFeatures view;                     ///< one feature a landmark, with its first descriptor
+  std::vector<std::uint32_t> landmarks;  ///< of each feature
 };
 
 /// Landmarks that the pose puts outside the image are left out; those beyond the depth camera's range have no depth.

@@ -14,8 +14,8 @@
 namespace camloc {
 namespace {
 
-constexpr double kVoxelM = 0.30;            // as wide as the largest tolerance along a ray
-constexpr std::uint32_t kMaxSamples = 12;   // observations of a landmark that its descriptors were chosen from
+constexpr double kVoxelM = 0.30;           // as wide as the largest tolerance along a ray
+constexpr std::uint32_t kMaxSamples = 12;  // observations of a landmark that its descriptors were chosen from
 
 using Voxel = std::array<std::int64_t, 3>;
 
@@ -57,14 +57,15 @@ std::vector<std::int64_t> nearest_views(const MapData& map) {
 
 /// How two landmarks lie to each other in a view.
 struct Offset {
-  double px = 0;        ///< in the image, in units of the landmark's scale
+  double px = 0;  ///< in the image, in units of the landmark's scale
   double depth_m = 0;
-  double sigma_m = 0;   ///< of that
+  double sigma_m = 0;  ///< of that
 };
 
 class SameLandmarkFinder {
  public:
-  SameLandmarkFinder(const MapData& a, const MapData& b, const LandmarkMergingOptions& options) : a_(a), b_(b), options_(options) {
+  SameLandmarkFinder(const MapData& a, const MapData& b, const LandmarkMergingOptions& options)
+      : a_(a), b_(b), options_(options) {
     for (std::uint32_t i = 0; i < a.landmarks.size(); ++i) voxels_[voxel_key(voxel_of(a.landmarks[i].position_m))].push_back(i);
   }
 
@@ -81,8 +82,10 @@ class SameLandmarkFinder {
       for_each_near(b_.landmarks[i].position_m, [&](std::uint32_t j) {
         const int distance = closest_appearances(b_.landmarks[i], a_.landmarks[j]);
         const Offset offset = offset_of(a_.landmarks[j], b_.landmarks[i], T_camera_map);
-        if (is_alike(a_.landmarks[j], b_.landmarks[i], offset, distance)) pairs.push_back({static_cast<double>(distance), {i, j, distance}});
-        else if (is_same_place(a_.landmarks[j], b_.landmarks[i], offset, distance)) pairs.push_back({256 + offset.px, {i, j, distance}});
+        if (is_alike(a_.landmarks[j], b_.landmarks[i], offset, distance))
+          pairs.push_back({static_cast<double>(distance), {i, j, distance}});
+        else if (is_same_place(a_.landmarks[j], b_.landmarks[i], offset, distance))
+          pairs.push_back({256 + offset.px, {i, j, distance}});
       });
     }
     std::sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) {
@@ -104,7 +107,8 @@ class SameLandmarkFinder {
   void for_each_near(const Eigen::Vector3f& p, const Visit& visit) const {
     const Voxel center = voxel_of(p);
     for (int offset = 0; offset < 27; ++offset) {
-      const auto found = voxels_.find(voxel_key({center[0] + offset % 3 - 1, center[1] + offset / 3 % 3 - 1, center[2] + offset / 9 - 1}));
+      const auto found =
+          voxels_.find(voxel_key({center[0] + offset % 3 - 1, center[1] + offset / 3 % 3 - 1, center[2] + offset / 9 - 1}));
       if (found == voxels_.end()) continue;
       for (const std::uint32_t j : found->second) visit(j);
     }
@@ -117,13 +121,15 @@ class SameLandmarkFinder {
     const double scale = std::max(1.0, static_cast<double>(in_b.min_reference_m) / p.norm());
     offset.px = (p.head<2>() / p.z() - q.head<2>() / q.z()).norm() * b_.camera.color.mean_focal_px() / scale;
     offset.depth_m = std::abs(p.z() - q.z());
-    offset.sigma_m = b_.camera.depth_noise.sigma_m(p.z()) * std::sqrt(1.0 / std::max(1U, in_a.num_observations) + 1.0 / std::max(1U, in_b.num_observations));
+    offset.sigma_m = b_.camera.depth_noise.sigma_m(p.z()) *
+                     std::sqrt(1.0 / std::max(1U, in_a.num_observations) + 1.0 / std::max(1U, in_b.num_observations));
     return offset;
   }
 
   [[nodiscard]] bool is_alike(const MapLandmark& in_a, const MapLandmark& in_b, const Offset& offset, int distance) const {
     if (distance > options_.max_distance || offset.px > options_.radius_px) return false;
-    const double tolerance = std::clamp(options_.max_depth_sigmas * offset.sigma_m, options_.min_depth_tolerance_m, options_.max_depth_tolerance_m);
+    const double tolerance =
+        std::clamp(options_.max_depth_sigmas * offset.sigma_m, options_.min_depth_tolerance_m, options_.max_depth_tolerance_m);
     const auto ratio = static_cast<float>(options_.max_reference_ratio);
     return offset.depth_m <= tolerance && in_b.min_reference_m <= in_a.max_reference_m * ratio &&
            in_a.min_reference_m <= in_b.max_reference_m * ratio;
@@ -139,7 +145,7 @@ class SameLandmarkFinder {
   const MapData& a_;
   const MapData& b_;
   const LandmarkMergingOptions& options_;
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> voxels_;   ///< looked up only, never iterated
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> voxels_;  ///< looked up only, never iterated
 };
 
 /// Mean direction, and a cone around it that holds both cones.
@@ -155,7 +161,8 @@ void merge_views(const MapLandmark& from, float from_share, MapLandmark* into) {
 
 void merge_positions(const MapLandmark& from, MapLandmark* into) {
   const auto variance = [](const MapLandmark& l) { return std::max(l.position_sigma_m * l.position_sigma_m, 1e-6F); };
-  const auto n = static_cast<float>(std::max(1U, into->num_observations)), m = static_cast<float>(std::max(1U, from.num_observations));
+  const auto n = static_cast<float>(std::max(1U, into->num_observations)),
+             m = static_cast<float>(std::max(1U, from.num_observations));
   const float w = n / variance(*into), v = m / variance(from);
   const float apart = (from.position_m - into->position_m).squaredNorm() / 3;
   into->position_m = (w * into->position_m + v * from.position_m) / (w + v);
@@ -171,7 +178,8 @@ std::vector<SameLandmark> find_same_landmarks(const MapData& a, const MapData& b
 
 std::uint32_t merge_landmark(const MapLandmark& from, const std::vector<std::uint32_t>& from_support,
                              const LandmarkMergingOptions& options, MapLandmark* into, std::vector<std::uint32_t>* support) {
-  const float share = static_cast<float>(from.num_observations) / static_cast<float>(std::max(1U, from.num_observations + into->num_observations));
+  const float share = static_cast<float>(from.num_observations) /
+                      static_cast<float>(std::max(1U, from.num_observations + into->num_observations));
   merge_views(from, share, into);
   merge_positions(from, into);
   into->num_observations += from.num_observations;
@@ -185,16 +193,20 @@ std::uint32_t merge_landmark(const MapLandmark& from, const std::vector<std::uin
     bool is_new;
   };
   std::vector<Appearance> all;
-  for (std::size_t d = 0; d < into->descriptors.size(); ++d) all.push_back({into->descriptors[d], (*support)[d], into->angle_rad, false});
-  for (std::size_t d = 0; d < from.descriptors.size(); ++d) all.push_back({from.descriptors[d], from_support[d], from.angle_rad, true});
+  for (std::size_t d = 0; d < into->descriptors.size(); ++d)
+    all.push_back({into->descriptors[d], (*support)[d], into->angle_rad, false});
+  for (std::size_t d = 0; d < from.descriptors.size(); ++d)
+    all.push_back({from.descriptors[d], from_support[d], from.angle_rad, true});
   std::stable_sort(all.begin(), all.end(), [](const Appearance& i, const Appearance& j) { return i.support > j.support; });
   std::vector<Appearance> kept;
   for (const Appearance& appearance : all) {
     const auto near = std::find_if(kept.begin(), kept.end(), [&](const Appearance& k) {
       return hamming_distance(k.descriptor, appearance.descriptor) <= options.appearance_distance;
     });
-    if (near != kept.end()) near->support += appearance.support;
-    else if (kept.size() < options.max_descriptors) kept.push_back(appearance);
+    if (near != kept.end())
+      near->support += appearance.support;
+    else if (kept.size() < options.max_descriptors)
+      kept.push_back(appearance);
   }
   std::stable_sort(kept.begin(), kept.end(), [](const Appearance& i, const Appearance& j) { return i.support > j.support; });
   into->descriptors.clear();

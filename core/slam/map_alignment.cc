@@ -14,12 +14,12 @@ namespace camloc {
 namespace {
 
 constexpr std::uint32_t kMinShared = 10;
-constexpr std::size_t kMaxLinks = 8;                 // of a keyframe to others, the strongest
-constexpr double kLinkM = 0.006, kLinkRad = 0.005;   // what a link of full strength is good for
-constexpr double kFixM = 0.01, kFixRad = 0.004;      // what the covariance of a fix leaves out: landmarks have common errors
+constexpr std::size_t kMaxLinks = 8;                // of a keyframe to others, the strongest
+constexpr double kLinkM = 0.006, kLinkRad = 0.005;  // what a link of full strength is good for
+constexpr double kFixM = 0.01, kFixRad = 0.004;     // what the covariance of a fix leaves out: landmarks have common errors
 constexpr double kMaxLooseness = 20;
 constexpr double kKernelSigmas = 3;
-constexpr double kAxisM = 2;                         // points this far along a keyframe's axes stand for its rotation
+constexpr double kAxisM = 2;  // points this far along a keyframe's axes stand for its rotation
 
 Matrix6d diagonal_covariance(double sigma_m, double sigma_rad) {
   Matrix6d covariance = Matrix6d::Zero();
@@ -53,12 +53,13 @@ void add_links(const MapData& b, PoseGraph* graph, Components* components) {
     std::size_t num_links = 0;
     for (const SharedLandmarks& other : covisible[k]) {
       if (num_links++ == kMaxLinks) break;
-      const bool is_mutual = std::any_of(covisible[other.keyframe].begin(),
-                                         covisible[other.keyframe].begin() +
-                                             static_cast<std::ptrdiff_t>(std::min(kMaxLinks, covisible[other.keyframe].size())),
-                                         [&](const SharedLandmarks& s) { return s.keyframe == k; });
-      if (is_mutual && other.keyframe < k) continue;   // was added from the other side
-      graph->edges.push_back(link(graph->T_map_pose, k, other.keyframe, std::clamp(150.0 / other.num_shared, 1.0, kMaxLooseness)));
+      const bool is_mutual = std::any_of(
+          covisible[other.keyframe].begin(),
+          covisible[other.keyframe].begin() + static_cast<std::ptrdiff_t>(std::min(kMaxLinks, covisible[other.keyframe].size())),
+          [&](const SharedLandmarks& s) { return s.keyframe == k; });
+      if (is_mutual && other.keyframe < k) continue;  // was added from the other side
+      graph->edges.push_back(
+          link(graph->T_map_pose, k, other.keyframe, std::clamp(150.0 / other.num_shared, 1.0, kMaxLooseness)));
       components->join(k, other.keyframe);
     }
   }
@@ -149,7 +150,7 @@ MapAlignmentReport align_map(std::span<const KeyframeFix> fixes, MapData* b) {
   const Rigid3 T_a_b = best->T_a_camera * b->keyframes[best->keyframe].T_map_camera.inverse();
   for (Rigid3& T : graph.T_map_pose) T = T_a_b * T;
   PoseGraphOptions options;
-  options.kernel_sigmas = 0;   // all of it first: a kernel would hold far fixes for wrong before the map has bent
+  options.kernel_sigmas = 0;  // all of it first: a kernel would hold far fixes for wrong before the map has bent
   optimize_pose_graph(options, &graph);
   options.kernel_sigmas = kKernelSigmas;
   optimize_pose_graph(options, &graph);

@@ -11,19 +11,21 @@
 namespace camloc {
 namespace {
 
-constexpr double kMaxFocalRatio = 1.25;   // beyond, features of the two cameras lie on different pyramid levels
+constexpr double kMaxFocalRatio = 1.25;  // beyond, features of the two cameras lie on different pyramid levels
 
 Status check_pair(const MapData& a, const MapData& b) {
   if (std::abs(a.orb_scale_factor - b.orb_scale_factor) > 1e-4F || a.orb_num_levels != b.orb_num_levels) {
     char text[256];
-    std::snprintf(text, sizeof text, "the maps have different image pyramids: %u levels of factor %.3f and %u of %.3f; build both alike",
-                  a.orb_num_levels, static_cast<double>(a.orb_scale_factor), b.orb_num_levels, static_cast<double>(b.orb_scale_factor));
+    std::snprintf(
+        text, sizeof text, "the maps have different image pyramids: %u levels of factor %.3f and %u of %.3f; build both alike",
+        a.orb_num_levels, static_cast<double>(a.orb_scale_factor), b.orb_num_levels, static_cast<double>(b.orb_scale_factor));
     return {ErrorCode::kInvalid, text};
   }
   const double ratio = a.camera.color.mean_focal_px() / b.camera.color.mean_focal_px();
   if (!(ratio < kMaxFocalRatio && ratio > 1 / kMaxFocalRatio)) {
     char text[1024];
-    std::snprintf(text, sizeof text, "cameras '%.40s' and '%.40s' do not fit: focal lengths %.0f and %.0f px; use recordings of like cameras",
+    std::snprintf(text, sizeof text,
+                  "cameras '%.40s' and '%.40s' do not fit: focal lengths %.0f and %.0f px; use recordings of like cameras",
                   a.camera.name.c_str(), b.camera.name.c_str(), a.camera.color.mean_focal_px(), b.camera.color.mean_focal_px());
     return {ErrorCode::kInvalid, text};
   }
@@ -81,7 +83,8 @@ Union unite(const MapData& a, const MapData& b, const MapMergeOptions& options, 
     const std::vector<std::uint32_t> support = guess_support(b.landmarks[i]);
     if (next_same < same.size() && same[next_same].b == i) {
       index_b[i] = same[next_same++].a;
-      report->num_appearances += merge_landmark(b.landmarks[i], support, options.landmarks, &parts.landmarks[index_b[i]], &parts.support[index_b[i]]);
+      report->num_appearances +=
+          merge_landmark(b.landmarks[i], support, options.landmarks, &parts.landmarks[index_b[i]], &parts.support[index_b[i]]);
       continue;
     }
     index_b[i] = static_cast<std::uint32_t>(parts.landmarks.size());
@@ -142,7 +145,8 @@ Result<MapData> merge_maps(const MapView& a, const MapData& b, const MapMergeOpt
   MapBuildOptions build = options.map;
   build.orb.scale_factor = first.orb_scale_factor;
   build.orb.num_levels = static_cast<int>(first.orb_num_levels);
-  if (progress && !progress("choosing landmarks and keyframes, training words", 0, 0)) return {ErrorCode::kUnavailable, "interrupted"};
+  if (progress && !progress("choosing landmarks and keyframes, training words", 0, 0))
+    return {ErrorCode::kUnavailable, "interrupted"};
   Result<MapData> merged = assemble_map(all.parts, build, &report->map);
   if (!merged.is_ok()) return merged.status();
   merged->name = first.name;

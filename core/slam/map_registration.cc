@@ -12,8 +12,8 @@ namespace camloc {
 namespace {
 
 constexpr int kGuidedPasses = 3;
-constexpr double kMetresPerRadian = 2;   // how much a turn counts against a step in "nearest keyframe"
-constexpr double kNearestM = 6;          // keyframes farther off show another place
+constexpr double kMetresPerRadian = 2;  // how much a turn counts against a step in "nearest keyframe"
+constexpr double kNearestM = 6;         // keyframes farther off show another place
 
 std::size_t longest_list(const MapData& map) {
   std::size_t longest = 1;
@@ -60,7 +60,7 @@ class MapRegistration {
   MapRegistrationOptions options_;
   Retriever retriever_;
   ViewRegistration registration_;
-  std::vector<std::vector<SharedLandmarks>> neighbours_;   ///< of A's keyframes
+  std::vector<std::vector<SharedLandmarks>> neighbours_;  ///< of A's keyframes
   LandmarkSet place_;
 };
 
@@ -140,12 +140,14 @@ std::optional<KeyframeFix> MapRegistration::find_anywhere(std::uint32_t keyframe
     Registration found = registration_.unguided(query.view, &place_, keyframe);
     if (found.is_found) candidates.push_back(std::move(found));
   }
-  const auto best = std::max_element(candidates.begin(), candidates.end(),
-                                     [](const Registration& i, const Registration& j) { return i.num_inliers() < j.num_inliers(); });
+  const auto best = std::max_element(candidates.begin(), candidates.end(), [](const Registration& i, const Registration& j) {
+    return i.num_inliers() < j.num_inliers();
+  });
   if (best == candidates.end() || !is_convincing(*best)) return std::nullopt;
   for (const Registration& other : candidates) {
-    const bool is_elsewhere = (other.T_map_camera.translation - best->T_map_camera.translation).norm() > options_.rival_distance_m ||
-                              rotation_distance_rad(other.T_map_camera.rotation, best->T_map_camera.rotation) > options_.rival_angle_rad;
+    const bool is_elsewhere =
+        (other.T_map_camera.translation - best->T_map_camera.translation).norm() > options_.rival_distance_m ||
+        rotation_distance_rad(other.T_map_camera.rotation, best->T_map_camera.rotation) > options_.rival_angle_rad;
     if (is_elsewhere && other.num_inliers() > options_.max_rival_share * best->num_inliers()) return std::nullopt;
   }
   return KeyframeFix{keyframe, best->T_map_camera, best->covariance, best->num_inliers()};
@@ -187,7 +189,8 @@ bool MapRegistration::agree(const KeyframeFix& i, const KeyframeFix& j) const {
   const Rigid3 predicted = i.T_a_camera * T_i_j;
   const double apart_m = T_i_j.translation.norm();
   return (predicted.translation - j.T_a_camera.translation).norm() <= options_.agreement_m + options_.drift_per_m * apart_m &&
-         rotation_distance_rad(predicted.rotation, j.T_a_camera.rotation) <= options_.agreement_rad + options_.drift_rad_per_m * apart_m;
+         rotation_distance_rad(predicted.rotation, j.T_a_camera.rotation) <=
+             options_.agreement_rad + options_.drift_rad_per_m * apart_m;
 }
 
 bool MapRegistration::is_spread(const std::vector<KeyframeFix>& fixes) const {
@@ -219,17 +222,19 @@ Status MapRegistration::keep_consistent(std::vector<KeyframeFix>* fixes) const {
     const std::string why = group.size() < options_.min_fixes
                                 ? found + " agree on where they are, " + std::to_string(options_.min_fixes) + " are needed"
                                 : found + " agree on where they are, but all of one spot";
-    return {ErrorCode::kInvalid,
-            "the two maps have no place in common that was seen with certainty (" + why + "); record a stretch that both walks share"};
+    return {ErrorCode::kInvalid, "the two maps have no place in common that was seen with certainty (" + why +
+                                     "); record a stretch that both walks share"};
   }
   std::vector<KeyframeFix> others;
   for (const KeyframeFix& fix : *fixes) {
-    if (std::none_of(group.begin(), group.end(), [&](const KeyframeFix& g) { return g.keyframe == fix.keyframe; })) others.push_back(fix);
+    if (std::none_of(group.begin(), group.end(), [&](const KeyframeFix& g) { return g.keyframe == fix.keyframe; }))
+      others.push_back(fix);
   }
   const std::size_t num_rivals = group_of(others).size();
   if (static_cast<double>(num_rivals) > options_.max_rival_group_share * static_cast<double>(group.size())) {
     return {ErrorCode::kInvalid, "the two maps fit together in two ways, by " + std::to_string(group.size()) + " and by " +
-                                     std::to_string(num_rivals) + " keyframes: the building repeats itself; record a stretch that tells "
+                                     std::to_string(num_rivals) +
+                                     " keyframes: the building repeats itself; record a stretch that tells "
                                      "the places apart"};
   }
   *fixes = group;

@@ -23,37 +23,37 @@
 namespace camloc {
 
 struct MapRegistrationOptions {
-  std::uint32_t max_queries = 400;        ///< keyframes asked without a prediction, evenly spread
-  std::uint32_t num_retrieved = 40;       ///< places that look alike
-  std::uint32_t num_candidates = 6;       ///< of those, not yet part of another one's surroundings, asked for geometry
+  std::uint32_t max_queries = 400;   ///< keyframes asked without a prediction, evenly spread
+  std::uint32_t num_retrieved = 40;  ///< places that look alike
+  std::uint32_t num_candidates = 6;  ///< of those, not yet part of another one's surroundings, asked for geometry
   std::uint32_t keyframes_per_place = 6;
   std::uint32_t max_place_landmarks = 3000;
-  std::uint32_t min_shared = 20;          ///< landmarks that make two keyframes neighbours
+  std::uint32_t min_shared = 20;  ///< landmarks that make two keyframes neighbours
   int min_inliers = 30;
   double min_inlier_ratio = 0.3, min_depth_agreement = 0.6, min_spread = 0.15;
-  double max_rival_share = 0.6;           ///< inliers of another place, as a share of the best
-  double rival_distance_m = 0.5, rival_angle_rad = 0.35;   ///< another place lies at least this far from the best
+  double max_rival_share = 0.6;                           ///< inliers of another place, as a share of the best
+  double rival_distance_m = 0.5, rival_angle_rad = 0.35;  ///< another place lies at least this far from the best
   // How far two fixes may differ in the motion between the maps: they are bent against each other by their drift.
   double agreement_m = 0.10, agreement_rad = 0.04;
-  double drift_per_m = 0.02, drift_rad_per_m = 0.002;      ///< more for each metre between them
-  std::uint32_t min_fixes = 4;            ///< that agree
-  double min_extent_m = 0.5, min_extent_rad = 0.5;         ///< over which those are spread, one of the two
-  double max_rival_group_share = 0.5;     ///< of fixes that agree on another motion
-  float guided_radius_px = 25;            ///< of the look around a predicted pose
+  double drift_per_m = 0.02, drift_rad_per_m = 0.002;  ///< more for each metre between them
+  std::uint32_t min_fixes = 4;                         ///< that agree
+  double min_extent_m = 0.5, min_extent_rad = 0.5;     ///< over which those are spread, one of the two
+  double max_rival_group_share = 0.5;                  ///< of fixes that agree on another motion
+  float guided_radius_px = 25;                         ///< of the look around a predicted pose
 };
 
 /// A keyframe of B where A's landmarks put it.
 struct KeyframeFix {
   std::uint32_t keyframe = 0;
   Rigid3 T_a_camera;
-  Matrix6d covariance = Matrix6d::Identity();   ///< of pose_error(), axes of A
+  Matrix6d covariance = Matrix6d::Identity();  ///< of pose_error(), axes of A
   int num_inliers = 0;
 };
 
 struct MapRegistrationReport {
-  std::uint32_t num_queries = 0;       ///< keyframes asked without a prediction
-  std::uint32_t num_convincing = 0;    ///< of those, with a fix of their own
-  std::uint32_t num_disagreeing = 0;   ///< of those, refused because the majority says something else
+  std::uint32_t num_queries = 0;      ///< keyframes asked without a prediction
+  std::uint32_t num_convincing = 0;   ///< of those, with a fix of their own
+  std::uint32_t num_disagreeing = 0;  ///< of those, refused because the majority says something else
 };
 
 /// Says what is going on, step `done` of `total`; false ends the work.
@@ -62,8 +62,8 @@ using MapMergeProgress = std::function<bool(const std::string& what, std::uint64
 /// One per keyframe of B that was found in A, ascending. `a_data` is what unpack_map(a) gives.
 /// Errors: kInvalid when too few keyframes agree on where they are, kUnavailable when `progress` said so.
 [[nodiscard]] Result<std::vector<KeyframeFix>> register_map(const MapView& a, const MapData& a_data, const MapData& b,
-                                                            const MapRegistrationOptions& options, const MapMergeProgress& progress,
-                                                            MapRegistrationReport* report);
+                                                            const MapRegistrationOptions& options,
+                                                            const MapMergeProgress& progress, MapRegistrationReport* report);
 
 /// Keyframes that share landmarks.
 struct SharedLandmarks {

@@ -70,7 +70,8 @@ TEST(MapAssembly, KeepsWhatIsWorthMost) {
   ASSERT_TRUE(map.is_ok()) << map.status().message();
   EXPECT_LE(serialize_map(map.value()).value().size(), options.max_bytes);
   const auto& landmarks = map.value().landmarks;
-  const auto num_worthy = std::count_if(landmarks.begin(), landmarks.end(), [](const MapLandmark& l) { return l.num_observations == 40; });
+  const auto num_worthy =
+      std::count_if(landmarks.begin(), landmarks.end(), [](const MapLandmark& l) { return l.num_observations == 40; });
   EXPECT_GT(static_cast<double>(num_worthy), 0.95 * static_cast<double>(landmarks.size()));
 }
 
@@ -111,7 +112,7 @@ TEST(MapAssembly, FillsTheBudgetWhereAskedTo) {
   const Wall wall(3000);
   MapBuildOptions options;
   options.max_bytes = 60000;
-  options.max_bytes_per_landmark = 75;   // a cautious guess leaves much of the budget
+  options.max_bytes_per_landmark = 75;  // a cautious guess leaves much of the budget
   const auto cautious = assemble_map(wall.parts, options, nullptr);
   options.fills_budget = true;
   MapBuildReport report;

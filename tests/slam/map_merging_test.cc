@@ -69,9 +69,8 @@ TEST_F(MapMergingTest, FindsTheMotionAndFusesWhatBothSaw) {
   std::size_t num_common = 0;
   for (const MapLandmark& in_b : b.landmarks) {
     const Eigen::Vector3d p = second_day().T_day_world.inverse() * in_b.position_m.cast<double>();
-    num_common += std::any_of(a.landmarks.begin(), a.landmarks.end(), [&](const MapLandmark& in_a) {
-      return (in_a.position_m.cast<double>() - p).norm() < 0.01;
-    });
+    num_common += std::any_of(a.landmarks.begin(), a.landmarks.end(),
+                              [&](const MapLandmark& in_a) { return (in_a.position_m.cast<double>() - p).norm() < 0.01; });
   }
   EXPECT_NEAR(report_.num_fused, static_cast<double>(num_common), 0.03 * static_cast<double>(num_common));
   EXPECT_EQ(report_.num_fused + report_.num_added, b.landmarks.size());
@@ -98,7 +97,7 @@ TEST_F(MapMergingTest, FusedLandmarksAreSeenByKeyframesOfBothDays) {
 TEST_F(MapMergingTest, BendsTheSecondMapOntoTheFirst) {
   const Corridor corridor = make_corridor(1);
   DayOptions drifting = second_day();
-  drifting.curvature_per_m = 0.002;   // 0.4 m beside the corridor at its end
+  drifting.curvature_per_m = 0.002;  // 0.4 m beside the corridor at its end
   const auto merged = merge(make_day(corridor, {}), make_day(corridor, drifting));
   ASSERT_TRUE(merged.is_ok()) << merged.status().message();
   EXPECT_GT(report_.alignment.bend_m, 0.05);
@@ -207,7 +206,8 @@ TEST_F(MapMergingTest, SameMapsGiveTheSameBytesAndCanBeInterrupted) {
   ASSERT_TRUE(once.is_ok() && again.is_ok());
   EXPECT_EQ(serialize_map(once.value()).value(), serialize_map(again.value()).value());
   int steps = 0;
-  const auto stopped = merge_maps(open(a), b, options_, [&](const std::string&, std::uint64_t, std::uint64_t) { return ++steps < 5; }, &report_);
+  const auto stopped = merge_maps(
+      open(a), b, options_, [&](const std::string&, std::uint64_t, std::uint64_t) { return ++steps < 5; }, &report_);
   EXPECT_EQ(stopped.status().code(), ErrorCode::kUnavailable);
   EXPECT_EQ(steps, 5);
 }

@@ -20,7 +20,7 @@ namespace camloc::testing {
 struct Corridor {
   struct Point {
     Eigen::Vector3d position_m, normal;
-    Descriptor descriptor, changed;   ///< how it looks, and how it looks after it was changed
+    Descriptor descriptor, changed;  ///< how it looks, and how it looks after it was changed
   };
   std::vector<Point> points;
 };
@@ -32,7 +32,8 @@ inline Corridor make_corridor(std::uint32_t seed, double length_m = 20, double p
   const double unique_m = period_m > 0 ? period_m : length_m;
   for (int i = 0; i < static_cast<int>(120 * unique_m); ++i) {
     const double side = i % 2 == 0 ? 2 : -2;
-    const Corridor::Point point{{random.uniform(0, unique_m), side, random.uniform(0, 2.5)}, {0, side > 0 ? -1.0 : 1.0, 0}, random.descriptor(), {}};
+    const Corridor::Point point{
+        {random.uniform(0, unique_m), side, random.uniform(0, 2.5)}, {0, side > 0 ? -1.0 : 1.0, 0}, random.descriptor(), {}};
     for (double offset = 0; offset < length_m; offset += unique_m) {
       corridor.points.push_back(point);
       corridor.points.back().position_m.x() += offset;
@@ -45,12 +46,12 @@ inline Corridor make_corridor(std::uint32_t seed, double length_m = 20, double p
 struct DayOptions {
   std::uint32_t seed = 1;
   Rigid3 T_day_world;
-  double first_m = 0, last_m = 20;     ///< stretch that was walked
+  double first_m = 0, last_m = 20;  ///< stretch that was walked
   double missed_share = 0.3;
-  double changed_share = 0;            ///< of the points that look different
+  double changed_share = 0;  ///< of the points that look different
   int noise_bits = 12;
   double noise_m = 0.003;
-  double curvature_per_m = 0;          ///< drift: the heading errs by this for each metre
+  double curvature_per_m = 0;  ///< drift: the heading errs by this for each metre
   std::uint32_t num_observations = 6;
 };
 
@@ -73,7 +74,8 @@ inline MapData make_day(const Corridor& corridor, const DayOptions& options) {
     const bool is_missed = random.uniform(0, 1) < options.missed_share, is_changed = random.uniform(0, 1) < options.changed_share;
     if (is_missed || point.position_m.x() < options.first_m - 2 || point.position_m.x() > options.last_m + 2) continue;
     const Rigid3 T_bent = options.T_day_world * bent({Eigen::Quaterniond::Identity(), point.position_m}, options.curvature_per_m);
-    MapLandmark landmark = room_landmark(T_bent.translation + options.noise_m * random.direction(), T_bent.rotation * point.normal, &random);
+    MapLandmark landmark =
+        room_landmark(T_bent.translation + options.noise_m * random.direction(), T_bent.rotation * point.normal, &random);
     landmark.min_reference_m = 1.5F;
     landmark.max_reference_m = 5.0F;
     landmark.position_sigma_m = 0.004F;
@@ -85,7 +87,8 @@ inline MapData make_day(const Corridor& corridor, const DayOptions& options) {
   int step = 0;
   for (double x = options.first_m; x <= options.last_m; x += 0.5, ++step) {
     const double yaw = (step % 2 == 0 ? 1.57 : -1.57) + random.uniform(-0.4, 0.4);
-    const Rigid3 T_world_camera = looking({x, random.uniform(-0.5, 0.5), random.uniform(1.2, 1.6)}, {std::cos(yaw), std::sin(yaw), 0});
+    const Rigid3 T_world_camera =
+        looking({x, random.uniform(-0.5, 0.5), random.uniform(1.2, 1.6)}, {std::cos(yaw), std::sin(yaw), 0});
     MapKeyframe keyframe;
     keyframe.T_map_camera = options.T_day_world * bent(T_world_camera, options.curvature_per_m);
     for (std::uint32_t i = 0; i < truth.size(); ++i) {
