@@ -61,6 +61,8 @@ Status replace_file(const std::string& path, std::span<const std::byte> bytes) {
   std::filesystem::path target = std::filesystem::weakly_canonical(path, ignored);
   if (target.empty()) target = path;
   if (std::filesystem::is_directory(target, ignored)) return write_error(path, EISDIR);
+  if (std::filesystem::exists(target, ignored) && !std::filesystem::is_regular_file(target, ignored))
+    return {ErrorCode::kIo, "cannot write " + path + ": it is a device, pipe or socket and no file; choose another name"};
   const std::filesystem::path folder = target.has_parent_path() ? target.parent_path() : ".";
 
   // The process id keeps two writers apart; a leftover of a killed one with the same id is replaced.

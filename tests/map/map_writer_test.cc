@@ -11,6 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <map>
@@ -269,6 +271,18 @@ TEST(MapWriter, RefusesAFolderAndAMissingFolder) {
 }
 
 // In a child, because root may write anywhere and cannot come back from another user.
+TEST(MapWriter, LeavesDevicesAndPipesAlone) {
+  const std::string pipe = ::testing::TempDir() + "map_writer_pipe";
+  std::filesystem::remove(pipe);
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const std::array<std::byte, 4> bytes{};
+  const Status status = replace_file(pipe, bytes);
+  EXPECT_EQ(status.code(), ErrorCode::kIo);
+  EXPECT_NE(status.message().find("no file"), std::string::npos) << status.message();
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+  std::filesystem::remove(pipe);
+}
+
 TEST(MapWriterDeathTest, UnwritableFolderLeavesTheOldFile) {
   const TemporaryFolder folder;
   const std::string path = folder.file("map.cmap");
