@@ -28,7 +28,7 @@ struct LoopOptions {
   int num_confirmations = 3;             ///< keyframes that must agree where the drift does not explain the correction
   // Where tracking was lost, the camera may have moved this far until the next segment began.
   double reach_m = 0.5, reach_m_s = 1.5;
-  int num_confirmations_within_reach = 2;      ///< keyframes that must agree to join a segment with the one before it
+  int num_confirmations_within_reach = 3;      ///< keyframes that must agree to join a segment with the one before it
   int num_confirmations_out_of_reach = 8;      ///< and any other two segments, over at least min_joined_path_m
   double min_joined_path_m = 2.0;
   double view_range_m = 6.0;                   ///< how far apart two views of one place may be taken from

@@ -164,13 +164,23 @@ Rigid3 Slam::final_pose(const TrackedView& view) const {
   return is_better ? refined.T_map_camera : T_map_camera;
 }
 
-// What was not known yet when a segment was processed may join it now.
+// What was not known yet when a segment was processed may join it now; then its other keyframes may find what they overlap with,
+// and the more of them do, the better the segment is turned into place.
 void Slam::join_leftover_segments() {
   if (!options_.close_loops || counts_.num_segments == counts_.num_joined + 1) return;
   const std::uint32_t main_segment = map_.keyframes().empty() ? 0 : map_.keyframe(0).segment;
+  std::vector<std::uint32_t> leftover;
   for (std::uint32_t k = 0; k < map_.keyframes().size(); ++k) {
-    if (map_.keyframe(k).segment == main_segment) continue;
-    if (loops_.consider(k, places_).is_joined) ++counts_.num_joined;
+    if (map_.keyframe(k).segment != main_segment) leftover.push_back(k);
+  }
+  for (int round = 0; round < 2; ++round) {
+    for (const std::uint32_t k : leftover) {
+      const bool is_joined_already = map_.keyframe(k).segment == main_segment;
+      if (is_joined_already != (round == 1)) continue;
+      const LoopReport report = loops_.consider(k, places_);
+      if (report.is_joined) ++counts_.num_joined;
+      if (report.is_closed && !report.is_joined) ++counts_.num_loops;
+    }
   }
 }
 
