@@ -213,12 +213,17 @@ Status map_segment(const BuildRequest& request, const Walk& walk, std::size_t nu
   MapBuilder builder(request.camera, recording_options(request));
   ProgressLine progress(pose_of_frame.size(), "mapping view");
   LoggedView logged;
-  for (std::uint64_t done = 0; log->next(&logged).is_ok();) {
+  std::uint64_t done = 0;
+  while (log->next(&logged).is_ok()) {
     const auto pose = pose_of_frame.find(logged.frame);
     if (pose == pose_of_frame.end()) continue;
     logged.view.T_map_camera = pose->second->T_map_camera;
     builder.add_view(logged.view);
     progress.show(++done, std::to_string(builder.progress().num_landmarks_before) + " landmarks");
+  }
+  if (done < pose_of_frame.size()) {
+    return {ErrorCode::kCorrupt, walk.pass.log_path + ": holds " + std::to_string(done) + " of " + std::to_string(pose_of_frame.size()) +
+                                     " views; is another build of the same map running?"};
   }
   progress.say("choosing landmarks and keyframes, training words ...");
   const std::string name = request.name.empty() ? folder_name(walk.frames.folder) : request.name;
