@@ -3,27 +3,18 @@
 #include "tools/camloc-map/build_report.h"
 
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
 #include <nlohmann/json.hpp>
-#include <numbers>
+
+#include "tools/common/text_format.h"
 
 namespace camloc::map_tool {
 namespace {
 
-double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
+using tools::append_text;
+using tools::degrees;
 
 double bytes_per_landmark(const BuildSummary& s) {
   return static_cast<double>(s.build.file_bytes) / static_cast<double>(std::max<std::uint32_t>(s.build.num_landmarks, 1));
-}
-
-[[gnu::format(printf, 2, 3)]] void append(std::string* text, const char* format, ...) {
-  char line[512];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line, sizeof line, format, arguments);
-  va_end(arguments);
-  *text += line;
 }
 
 unsigned long long count(std::uint64_t value) { return value; }
@@ -34,33 +25,28 @@ std::string vertical_text(const BuildSummary& s) {
   if (s.survey && s.survey->is_written) return "from control points";
   const auto& up = s.slam->up;
   if (!up) return "unknown (" + s.slam->up_problem + "); axes are those of the first camera";
-  char text[160];
-  if (up->source == GravitySource::kFloor) {
-    std::snprintf(text, sizeof text, "from the floor, %.2f m below the cameras; z is up", up->camera_height_m);
-  } else {
-    std::snprintf(text, sizeof text, "from the accelerometer, to %.1f deg; z is up", degrees(up->sigma_rad));
-  }
-  return text;
+  if (up->source == GravitySource::kFloor) return tools::text_of("from the floor, %.2f m below the cameras; z is up", up->camera_height_m);
+  return tools::text_of("from the accelerometer, to %.1f deg; z is up", degrees(up->sigma_rad));
 }
 
 void append_slam(const BuildSummary& s, std::string* text) {
   const SlamSummary& slam = *s.slam;
   const SlamCounts& c = slam.counts;
-  append(text, "%-22s%u of %u, lost %u times\n", "frames tracked", c.num_views - c.num_lost, c.num_views, c.num_losses);
-  append(text, "%-22s%u, of %u views each on average\n", "SLAM keyframes", c.num_keyframes, c.num_views / std::max(c.num_keyframes, 1U));
-  append(text, "%-22s%u closed, %u refused\n", "loops", c.num_loops, c.num_loops_refused);
-  append(text, "%-22smedian %.2f px, 90 %% below %.2f px (%llu sightings)\n", "reprojection error", slam.fit.median_px, slam.fit.p90_px,
+  append_text(text, "%-22s%u of %u, lost %u times\n", "frames tracked", c.num_views - c.num_lost, c.num_views, c.num_losses);
+  append_text(text, "%-22s%u, of %u views each on average\n", "SLAM keyframes", c.num_keyframes, c.num_views / std::max(c.num_keyframes, 1U));
+  append_text(text, "%-22s%u closed, %u refused\n", "loops", c.num_loops, c.num_loops_refused);
+  append_text(text, "%-22smedian %.2f px, 90 %% below %.2f px (%llu sightings)\n", "reprojection error", slam.fit.median_px, slam.fit.p90_px,
          count(slam.fit.num_sightings));
-  append(text, "%-22smedian %.1f mm\n", "depth error", 1000 * slam.fit.median_depth_m);
-  append(text, "%-22s%s\n", "vertical", vertical_text(s).c_str());
+  append_text(text, "%-22smedian %.1f mm\n", "depth error", 1000 * slam.fit.median_depth_m);
+  append_text(text, "%-22s%s\n", "vertical", vertical_text(s).c_str());
 }
 
 void append_submaps(const BuildSummary& s, std::string* text) {
   if (s.submaps.empty()) return;
-  append(text, "%zu further segment%s could not be joined to the map: no place in common was seen with certainty\n", s.submaps.size(),
+  append_text(text, "%zu further segment%s could not be joined to the map: no place in common was seen with certainty\n", s.submaps.size(),
          s.submaps.size() == 1 ? "" : "s");
   for (const SubmapSummary& submap : s.submaps) {
-    append(text, "  %-20s%u views, %u keyframes\n", submap.map_path.empty() ? "(too short, left out)" : submap.map_path.c_str(),
+    append_text(text, "  %-20s%u views, %u keyframes\n", submap.map_path.empty() ? "(too short, left out)" : submap.map_path.c_str(),
            submap.num_views, submap.num_keyframes);
   }
 }
@@ -73,9 +59,9 @@ void append_weak_spots(const std::vector<WeakSpot>& all, std::string* text) {
   std::stable_sort(shown.begin(), shown.end(), [&](const WeakSpot& a, const WeakSpot& b) { return length(a) > length(b); });
   if (shown.size() > kMaxSpotsShown) shown.resize(kMaxSpotsShown);
   std::sort(shown.begin(), shown.end(), [](const WeakSpot& a, const WeakSpot& b) { return a.first_frame < b.first_frame; });
-  append(text, "weak spots (%zu%s)\n", all.size(), all.size() > shown.size() ? ", the longest shown" : "");
+  append_text(text, "weak spots (%zu%s)\n", all.size(), all.size() > shown.size() ? ", the longest shown" : "");
   for (const WeakSpot& w : shown) {
-    append(text, "  frames %llu to %llu: %s; %s\n", count(w.first_frame), count(w.last_frame), w.what.c_str(), w.advice.c_str());
+    append_text(text, "  frames %llu to %llu: %s; %s\n", count(w.first_frame), count(w.last_frame), w.what.c_str(), w.advice.c_str());
   }
 }
 
@@ -106,31 +92,31 @@ nlohmann::ordered_json slam_json(const SlamSummary& slam) {
 std::string format_table(const BuildSummary& s) {
   const MapBuildReport& b = s.build;
   std::string text;
-  append(&text, "%-22s%s\n", "map", s.map_path.c_str());
-  append(&text, "%-22s%u of %llu recorded, %llu selected\n", "frames used", b.num_frames, count(s.num_recorded),
+  append_text(&text, "%-22s%s\n", "map", s.map_path.c_str());
+  append_text(&text, "%-22s%u of %llu recorded, %llu selected\n", "frames used", b.num_frames, count(s.num_recorded),
          count(s.num_selected));
-  append(&text, "%-22s%llu without pose, %llu without depth, %llu broken\n", "frames skipped", count(s.num_without_pose),
+  append_text(&text, "%-22s%llu without pose, %llu without depth, %llu broken\n", "frames skipped", count(s.num_without_pose),
          count(s.num_without_depth), count(s.num_broken));
   if (s.slam) append_slam(s, &text);
-  if (s.model_scale) append(&text, "%-22s%s\n", "scale of the model", describe_scale(*s.model_scale).c_str());
-  append(&text, "%-22s%llu\n", "observations", count(b.num_observations));
-  append(&text, "%-22s%u of %u\n", "landmarks kept", b.num_landmarks, b.num_landmarks_before);
-  append(&text, "%-22s%u\n", "descriptors", b.num_descriptors);
-  append(&text, "%-22s%u of %u views cover all landmarks\n", "keyframes", b.num_keyframes, b.num_keyframes_before);
-  append(&text, "%-22s%u\n", "words", b.num_words);
-  append(&text, "%-22s%llu bytes, %.1f a landmark\n", "size", count(b.file_bytes), bytes_per_landmark(s));
+  if (s.model_scale) append_text(&text, "%-22s%s\n", "scale of the model", describe_scale(*s.model_scale).c_str());
+  append_text(&text, "%-22s%llu\n", "observations", count(b.num_observations));
+  append_text(&text, "%-22s%u of %u\n", "landmarks kept", b.num_landmarks, b.num_landmarks_before);
+  append_text(&text, "%-22s%u\n", "descriptors", b.num_descriptors);
+  append_text(&text, "%-22s%u of %u views cover all landmarks\n", "keyframes", b.num_keyframes, b.num_keyframes_before);
+  append_text(&text, "%-22s%u\n", "words", b.num_words);
+  append_text(&text, "%-22s%llu bytes, %.1f a landmark\n", "size", count(b.file_bytes), bytes_per_landmark(s));
   if (b.num_consistency_pairs > 0) {
-    append(&text, "%-22s%.1f cm, %.2f deg per axis between views (%u pairs)\n", "pose inconsistency", 100 * s.pose_sigma_m,
+    append_text(&text, "%-22s%.1f cm, %.2f deg per axis between views (%u pairs)\n", "pose inconsistency", 100 * s.pose_sigma_m,
            degrees(s.pose_sigma_rad), b.num_consistency_pairs);
   } else {
-    append(&text, "%-22sunknown: no two views see the same place at different times\n", "pose inconsistency");
+    append_text(&text, "%-22sunknown: no two views see the same place at different times\n", "pose inconsistency");
   }
-  append(&text, "%-22s%.1f s, %.0f frames/s\n", "time", s.seconds, static_cast<double>(b.num_frames) / std::max(s.seconds, 1e-3));
+  append_text(&text, "%-22s%.1f s, %.0f frames/s\n", "time", s.seconds, static_cast<double>(b.num_frames) / std::max(s.seconds, 1e-3));
   if (s.survey) text += "\n" + format_table(*s.survey);
   if (s.merge) text += format_table(*s.merge);
   append_submaps(s, &text);
   if (s.slam) append_weak_spots(s.slam->weak_spots, &text);
-  if (s.is_partial) append(&text, "interrupted: this is a map of the first part; the same command with --resume goes on\n");
+  if (s.is_partial) append_text(&text, "interrupted: this is a map of the first part; the same command with --resume goes on\n");
   return text;
 }
 

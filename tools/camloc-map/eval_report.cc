@@ -3,92 +3,83 @@
 #include "tools/camloc-map/eval_report.h"
 
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
 #include <nlohmann/json.hpp>
-#include <numbers>
+
+#include "tools/common/text_format.h"
 
 namespace camloc::map_tool {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using tools::append_text;
+using tools::degrees;
 
-double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 unsigned long long count(std::uint64_t value) { return value; }
 double percent(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
-[[gnu::format(printf, 2, 3)]] void append(std::string* text, const char* format, ...) {
-  char line[512];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line, sizeof line, format, arguments);
-  va_end(arguments);
-  *text += line;
-}
-
 void append_inputs(const EvalSummary& s, std::string* text) {
   const Evaluation& e = s.evaluation;
-  append(text, "%-22s%s\n", "map", s.map_path.c_str());
-  append(text, "%-22s%llu of %llu with at least %u observations, %llu keyframes\n", "landmarks", count(e.num_used),
+  append_text(text, "%-22s%s\n", "map", s.map_path.c_str());
+  append_text(text, "%-22s%llu of %llu with at least %u observations, %llu keyframes\n", "landmarks", count(e.num_used),
          count(e.num_landmarks), s.min_observations, count(e.num_keyframes));
-  append(text, "%-22s%s\n", "cloud", s.cloud_name.c_str());
-  append(text, "%-22s%llu read, %llu of them invalid, %llu kept (voxel %.3g m)\n", "points", count(s.num_read),
+  append_text(text, "%-22s%s\n", "cloud", s.cloud_name.c_str());
+  append_text(text, "%-22s%llu read, %llu of them invalid, %llu kept (voxel %.3g m)\n", "points", count(s.num_read),
          count(s.num_invalid), count(s.num_points), s.voxel_m);
 }
 
 void append_alignment(const EvalSummary& s, std::string* text) {
   const Evaluation& e = s.evaluation;
-  append(text, "%-22s%s", "start", describe(e.start));
+  append_text(text, "%-22s%s", "start", describe(e.start));
   if (e.search)
-    append(text, ": %s, landmarks %.1f cm off (next best place %.1f cm)",
+    append_text(text, ": %s, landmarks %.1f cm off (next best place %.1f cm)",
            e.search->is_identity ? "the map's own frame" : "walls on walls", 100 * e.search->score_m,
            100 * e.search->rival_score_m);
-  append(text, "\n");
+  append_text(text, "\n");
   if (e.registration) {
     const Registration& r = *e.registration;
-    append(text, "%-22smoved by %.3f m, %.2f deg in %d iterations%s; %llu of %llu landmarks used, %.1f mm RMS to the surface\n",
+    append_text(text, "%-22smoved by %.3f m, %.2f deg in %d iterations%s; %llu of %llu landmarks used, %.1f mm RMS to the surface\n",
            "ICP", e.moved_m, degrees(e.moved_rad), r.num_iterations, r.is_converged ? "" : " (not converged)",
            count(r.num_correspondences), count(r.num_points), 1000 * r.rms_m);
   } else {
-    append(text, "%-22snone\n", "ICP");
+    append_text(text, "%-22snone\n", "ICP");
   }
 }
 
 void append_points(const Evaluation& e, std::string* text) {
   if (e.residuals.empty()) return;
-  append(text, "\n%-22s%10s%10s\n", "control point", "fit [cm]", "ICP [cm]");
+  append_text(text, "\n%-22s%10s%10s\n", "control point", "fit [cm]", "ICP [cm]");
   for (const PointResidual& r : e.residuals)
-    append(text, "  %-20s%10.1f%10.1f\n", r.name.substr(0, 20).c_str(), 100 * r.aligned_m.norm(), 100 * r.final_m.norm());
+    append_text(text, "  %-20s%10.1f%10.1f\n", r.name.substr(0, 20).c_str(), 100 * r.aligned_m.norm(), 100 * r.final_m.norm());
 }
 
 void append_row(const char* name, const DistanceStatistics& d, std::string* text) {
-  append(text, "  %-26s%9llu%8.2f%8.2f%8.2f%8.2f%8.1f%8.1f\n", name, count(d.count), 100 * d.mean_m, 100 * d.median_m,
+  append_text(text, "  %-26s%9llu%8.2f%8.2f%8.2f%8.2f%8.1f%8.1f\n", name, count(d.count), 100 * d.mean_m, 100 * d.median_m,
          100 * d.rms_m, 100 * d.p95_m, 100 * d.share_3cm, 100 * d.share_5cm);
 }
 
 void append_distances(const EvalSummary& s, std::string* text) {
   const CloudDistances& d = s.evaluation.distances;
-  append(text, "\n%-28s%9s%8s%8s%8s%8s%8s%8s\n", "distance [cm]", "count", "mean", "median", "RMS", "p95", "<3cm %", "<5cm %");
+  append_text(text, "\n%-28s%9s%8s%8s%8s%8s%8s%8s\n", "distance [cm]", "count", "mean", "median", "RMS", "p95", "<3cm %", "<5cm %");
   append_row("landmark to point", d.point, text);
   append_row("landmark to surface", d.plane, text);
   append_row("all landmarks to point", d.all, text);
   append_row("cloud cell to landmark", d.cells, text);
-  append(text, "\n%-22s%llu of %llu landmarks (%.1f %%) are farther than %.2g m from the cloud\n", "outside the scan",
+  append_text(text, "\n%-22s%llu of %llu landmarks (%.1f %%) are farther than %.2g m from the cloud\n", "outside the scan",
          count(d.num_outside), count(s.evaluation.num_used), percent(d.num_outside, s.evaluation.num_used),
          s.evaluation.max_distance_m);
-  append(text, "%-22s%.1f %% of %llu cells of the cloud near the keyframes have a landmark within 0.25 m\n", "coverage",
+  append_text(text, "%-22s%.1f %% of %llu cells of the cloud near the keyframes have a landmark within 0.25 m\n", "coverage",
          percent(d.num_covered, d.num_cells), count(d.num_cells));
 }
 
 void append_scale(const Evaluation& e, std::string* text) {
-  if (e.scale) append(text, "%-22s%.4f by ICP (expected 1 +- 0.01)\n", "scale", *e.scale);
+  if (e.scale) append_text(text, "%-22s%.4f by ICP (expected 1 +- 0.01)\n", "scale", *e.scale);
   if (e.points_scale)
-    append(text, "%-22s%.4f by the control points (1 +- %.2f)\n", "", *e.points_scale, e.points_scale_tolerance);
-  if (e.poses_scale) append(text, "%-22s%.4f by the camera positions (1 +- %.2f)\n", "", *e.poses_scale, e.poses_scale_tolerance);
+    append_text(text, "%-22s%.4f by the control points (1 +- %.2f)\n", "", *e.points_scale, e.points_scale_tolerance);
+  if (e.poses_scale) append_text(text, "%-22s%.4f by the camera positions (1 +- %.2f)\n", "", *e.poses_scale, e.poses_scale_tolerance);
   const Eigen::Vector3d &m = e.distances.map_extent_m, &c = e.distances.cloud_extent_m;
-  append(text, "%-22smap %.1f x %.1f x %.1f m, cloud %.1f x %.1f x %.1f m, volumes %.3g : 1\n", "boxes", m.x(), m.y(), m.z(),
+  append_text(text, "%-22smap %.1f x %.1f x %.1f m, cloud %.1f x %.1f x %.1f m, volumes %.3g : 1\n", "boxes", m.x(), m.y(), m.z(),
          c.x(), c.y(), c.z(), e.distances.volume_ratio());
 }
 
@@ -144,9 +135,9 @@ std::string format_table(const EvalSummary& s) {
   append_points(s.evaluation, &text);
   append_distances(s, &text);
   append_scale(s.evaluation, &text);
-  for (const std::string& file : s.files) append(&text, "%-22s%s\n", "written", file.c_str());
-  append(&text, "%-22s%.1f s\n", "time", s.seconds);
-  for (const std::string& warning : s.evaluation.warnings) append(&text, "WARNING %s\n", warning.c_str());
+  for (const std::string& file : s.files) append_text(&text, "%-22s%s\n", "written", file.c_str());
+  append_text(&text, "%-22s%.1f s\n", "time", s.seconds);
+  for (const std::string& warning : s.evaluation.warnings) append_text(&text, "WARNING %s\n", warning.c_str());
   return text;
 }
 

@@ -4,22 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
+
+#include "tools/common/text_format.h"
 
 namespace camloc::map_tool {
 namespace {
 
-constexpr double kScaleTolerance = 0.01;
+using tools::text_of;
 
-[[gnu::format(printf, 1, 2)]] std::string text_of(const char* format, ...) {
-  char text[512];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
+constexpr double kScaleTolerance = 0.01;
 
 void warn_about_scale(const Evaluation& e, std::vector<std::string>* warnings) {
   const auto warn = [&](const std::optional<double>& scale, double tolerance, const char* how) {

@@ -4,30 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <limits>
 #include <numeric>
 
 #include "core/geometry/alignment.h"
 #include "tools/camloc-map/eval_warnings.h"
+#include "tools/common/text_format.h"
 
 namespace camloc::map_tool {
 namespace {
+
+using tools::text_of;
 
 constexpr std::size_t kMaxFinalPoints = 50000;  // of the last registration; more change nothing
 constexpr std::size_t kMaxSearchPoints = 3000;  // for each start of a search
 constexpr double kSearchDistanceM = 1.5, kSearchTrim = 0.8;
 constexpr double kPoseLeverM = 1.0;  // what a rotation weighs against a position between two trajectories
-
-[[gnu::format(printf, 1, 2)]] std::string text_of(const char* format, ...) {
-  char text[512];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
 
 struct MapPoints {
   std::vector<Eigen::Vector3d> landmarks;  ///< with enough observations

@@ -7,28 +7,23 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
-#include <numbers>
 
 #include "tools/camloc-map/axis_check.h"
 #include "tools/camloc-map/consensus.h"
+#include "tools/common/text_format.h"
 
 namespace camloc::map_tool {
 namespace {
+
+using tools::degrees;
+using tools::text_of;
 
 constexpr double kMaxTurnSigmaRad = 0.05;  ///< 3 degrees: 50 cm at 10 m
 constexpr double kHighSigmas = 4;
 constexpr double kMaxScaleError = 0.01;
 constexpr std::size_t kMaxNamesInMessage = 8;
 constexpr std::size_t kMaxPoints = 2000;  ///< each is left out once
-
-template <typename... Values>
-std::string text_of(const char* format, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
@@ -81,7 +76,7 @@ std::string explain_rank(std::span<const PointPair> pairs) {
   const std::string direction = text_of("(%.2f, %.2f, %.2f)", axis.x(), axis.y(), axis.z());
   const std::string known = alignment.rank == AlignmentRank::kLine
                                 ? "not known"
-                                : text_of("known only to %.0f deg", std::min(180.0, sigma_rad * 180 / std::numbers::pi));
+                                : text_of("known only to %.0f deg", std::min(180.0, degrees(sigma_rad)));
   return "the control points lie on a line, direction " + direction + ": the turn about it is " + known + "; add a point beside the line";
 }
 

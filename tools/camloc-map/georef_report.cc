@@ -4,28 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <nlohmann/json.hpp>
-#include <numbers>
+
+#include "tools/common/text_format.h"
 
 namespace camloc::map_tool {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using tools::append_text;
+using tools::degrees;
 
 constexpr std::size_t kMaxNameColumns = 24;
-
-double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
-
-[[gnu::format(printf, 2, 3)]] void append(std::string* text, const char* format, ...) {
-  char line[512];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line, sizeof line, format, arguments);
-  va_end(arguments);
-  *text += line;
-}
 
 /// Standard deviations of position (m) and of the turn (rad) over the three axes.
 struct DatumSigmas {
@@ -50,12 +40,12 @@ std::string joined(const std::vector<std::string>& names) {
 
 void append_point(const GeorefPoint& point, int name_columns, std::string* text) {
   const Eigen::Vector3d& d = point.residual_m;
-  append(text, "%-*.*s %8.3f %8.3f %8.3f %8.3f %7.3f ", name_columns, name_columns, point.name.c_str(), d.x(), d.y(), d.z(), d.norm(),
+  append_text(text, "%-*.*s %8.3f %8.3f %8.3f %8.3f %7.3f ", name_columns, name_columns, point.name.c_str(), d.x(), d.y(), d.z(), d.norm(),
          point.pair.sigma_m);
-  if (point.left_out.is_determined) append(text, "%9.3f %6.1f  ", point.left_out.error_m.norm(), point.left_out.sigmas());
-  else append(text, "%9s %6s  ", "-", "-");
+  if (point.left_out.is_determined) append_text(text, "%9.3f %6.1f  ", point.left_out.error_m.norm(), point.left_out.sigmas());
+  else append_text(text, "%9s %6s  ", "-", "-");
   *text += to_string(point.verdict);
-  if (point.num_sightings > 1) append(text, "  %zu sightings, scatter %.3f", point.num_sightings, point.scatter_m);
+  if (point.num_sightings > 1) append_text(text, "  %zu sightings, scatter %.3f", point.num_sightings, point.scatter_m);
   *text += "\n";
 }
 
@@ -63,7 +53,7 @@ void append_points(const GeorefFit& fit, std::string* text) {
   std::size_t longest = 5;
   for (const GeorefPoint& point : fit.points) longest = std::max(longest, point.name.size());
   const int name_columns = static_cast<int>(std::min(longest, kMaxNameColumns));
-  append(text, "%-*s %8s %8s %8s %8s %7s %9s %6s  %s\n", name_columns, "point", "dx", "dy", "dz", "norm", "sigma", "predicted", "sigmas",
+  append_text(text, "%-*s %8s %8s %8s %8s %7s %9s %6s  %s\n", name_columns, "point", "dx", "dy", "dz", "norm", "sigma", "predicted", "sigmas",
          "verdict");
   for (const GeorefPoint& point : fit.points) append_point(point, name_columns, text);
   *text += "Metres, site minus fit. 'predicted': how far the point is from where the others put it, also in standard deviations.\n\n";
@@ -77,18 +67,18 @@ bool is_usable(const GeorefFit& fit) {
 void append_fit(const GeorefFit& fit, std::string* text) {
   const auto num_used = std::count_if(fit.points.begin(), fit.points.end(),
                                       [](const GeorefPoint& point) { return is_in_fit(point.verdict); });
-  append(text, "%-14s%.3f m over %d points; predicted from the others %.3f m\n", "RMS", fit.rigid.rms_m, static_cast<int>(num_used),
+  append_text(text, "%-14s%.3f m over %d points; predicted from the others %.3f m\n", "RMS", fit.rigid.rms_m, static_cast<int>(num_used),
          fit.rms_leave_one_out_m);
   if (!is_usable(fit)) return;
-  append(text, "%-14s%.5f +- %.5f with free scale (written is the rigid fit, scale 1)\n", "scale", fit.similarity.scale,
+  append_text(text, "%-14s%.5f +- %.5f with free scale (written is the rigid fit, scale 1)\n", "scale", fit.similarity.scale,
          fit.similarity.scale_sigma * std::sqrt(fit.covariance_factor));
   const Eigen::Vector3d& t = fit.datum.T_wcs_map.translation;
   const Eigen::Quaterniond& q = fit.datum.T_wcs_map.rotation;
-  append(text, "%-14sposition %.4f %.4f %.4f m, rotation wxyz %.7f %.7f %.7f %.7f\n", "T_wcs_map", t.x(), t.y(), t.z(), q.w(), q.x(), q.y(),
+  append_text(text, "%-14sposition %.4f %.4f %.4f m, rotation wxyz %.7f %.7f %.7f %.7f\n", "T_wcs_map", t.x(), t.y(), t.z(), q.w(), q.x(), q.y(),
          q.z());
   const DatumSigmas sigmas = sigmas_of(fit);
-  append(text, "%-14s%.3f m amid the points, %.3f deg, per axis", "uncertainty", sigmas.position_m, degrees(sigmas.turn_rad));
-  if (fit.covariance_factor > 1) append(text, " (residuals are %.1f times the sigmas: scaled up)", std::sqrt(fit.covariance_factor));
+  append_text(text, "%-14s%.3f m amid the points, %.3f deg, per axis", "uncertainty", sigmas.position_m, degrees(sigmas.turn_rad));
+  if (fit.covariance_factor > 1) append_text(text, " (residuals are %.1f times the sigmas: scaled up)", std::sqrt(fit.covariance_factor));
   *text += "\n";
 }
 

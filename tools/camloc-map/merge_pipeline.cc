@@ -3,32 +3,21 @@
 #include "tools/camloc-map/merge_pipeline.h"
 
 #include <chrono>
-#include <cstdarg>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "core/map/map_writer.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/progress_line.h"
+#include "tools/common/text_format.h"
 
 namespace camloc::map_tool {
 namespace {
 
+using tools::append_text;
+using tools::degrees;
 using tools::InterruptGuard;
 using tools::ProgressLine;
-
-double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
-
-[[gnu::format(printf, 2, 3)]] void append(std::string* text, const char* format, ...) {
-  char line[512];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line, sizeof line, format, arguments);
-  va_end(arguments);
-  *text += line;
-}
 
 /// A bar for each thing that is done.
 class MergeProgressLine {
@@ -73,24 +62,24 @@ std::string format_table(const MergeSummary& s) {
   const MapMergeReport& r = s.report;
   const MapBuildReport& m = r.map;
   std::string text;
-  append(&text, "%-22s%s\n", "merged map", s.map_path.c_str());
-  append(&text, "%-22s%s: %u landmarks, %u keyframes\n", "first map", s.map_a.c_str(), r.num_landmarks_a, r.num_keyframes_a);
-  append(&text, "%-22s%s: %u landmarks, %u keyframes\n", "second map", s.map_b.c_str(), r.num_landmarks_b, r.num_keyframes_b);
-  append(&text, "%-22s%u of %u keyframes of the second map; %u of %u asked by look alone, %u refused\n", "found in the first",
+  append_text(&text, "%-22s%s\n", "merged map", s.map_path.c_str());
+  append_text(&text, "%-22s%s: %u landmarks, %u keyframes\n", "first map", s.map_a.c_str(), r.num_landmarks_a, r.num_keyframes_a);
+  append_text(&text, "%-22s%s: %u landmarks, %u keyframes\n", "second map", s.map_b.c_str(), r.num_landmarks_b, r.num_keyframes_b);
+  append_text(&text, "%-22s%u of %u keyframes of the second map; %u of %u asked by look alone, %u refused\n", "found in the first",
          r.num_localized, r.num_keyframes_b, r.registration.num_convincing, r.registration.num_queries,
          r.registration.num_disagreeing);
-  append(&text, "%-22s%.1f cm, %.2f deg median of those; the second map was bent by up to %.1f cm\n", "disagreement",
+  append_text(&text, "%-22s%.1f cm, %.2f deg median of those; the second map was bent by up to %.1f cm\n", "disagreement",
          100 * r.alignment.residual_m, degrees(r.alignment.residual_rad), 100 * r.alignment.bend_m);
-  append(&text, "%-22s%u fused, %u added, %u further appearances\n", "landmarks of second", r.num_fused, r.num_added,
+  append_text(&text, "%-22s%u fused, %u added, %u further appearances\n", "landmarks of second", r.num_fused, r.num_added,
          r.num_appearances);
-  append(&text, "%-22s%u of %u\n", "landmarks kept", m.num_landmarks, m.num_landmarks_before);
-  append(&text, "%-22s%u, %.2f a landmark\n", "descriptors", m.num_descriptors,
+  append_text(&text, "%-22s%u of %u\n", "landmarks kept", m.num_landmarks, m.num_landmarks_before);
+  append_text(&text, "%-22s%u, %.2f a landmark\n", "descriptors", m.num_descriptors,
          static_cast<double>(m.num_descriptors) / std::max(1U, m.num_landmarks));
-  append(&text, "%-22s%u of %u views cover all landmarks\n", "keyframes", m.num_keyframes, m.num_keyframes_before);
-  append(&text, "%-22s%llu bytes, %.1f a landmark\n", "size", static_cast<unsigned long long>(m.file_bytes),
+  append_text(&text, "%-22s%u of %u views cover all landmarks\n", "keyframes", m.num_keyframes, m.num_keyframes_before);
+  append_text(&text, "%-22s%llu bytes, %.1f a landmark\n", "size", static_cast<unsigned long long>(m.file_bytes),
          static_cast<double>(m.file_bytes) / std::max(1U, m.num_landmarks));
-  if (r.is_datum_from_b) append(&text, "%-22sthat of the second map, carried over\n", "datum");
-  append(&text, "%-22s%.1f s\n", "time of merging", s.seconds);
+  if (r.is_datum_from_b) append_text(&text, "%-22sthat of the second map, carried over\n", "datum");
+  append_text(&text, "%-22s%.1f s\n", "time of merging", s.seconds);
   return text;
 }
 

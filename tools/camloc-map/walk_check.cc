@@ -3,9 +3,9 @@
 #include "tools/camloc-map/walk_check.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
-#include <numbers>
+
+#include "tools/common/text_format.h"
 
 namespace camloc::map_tool {
 namespace {
@@ -92,10 +92,8 @@ Status WalkCheck::verdict(const SlamResult& result) const {
     turned_rad = std::max(turned_rad, rotation_distance_rad(pose.T_map_camera.rotation, first.T_map_camera.rotation));
   }
   if (moved_m >= kMinMovedM || turned_rad >= kMinTurnedRad) return Status::ok();
-  char text[200];
-  std::snprintf(text, sizeof text, "the camera stood still: it moved by %.1f cm and turned by %.1f deg in %zu frames; a map needs a walk",
-                100 * moved_m, turned_rad * 180 / std::numbers::pi, result.poses.size());
-  return {ErrorCode::kInvalid, text};
+  return {ErrorCode::kInvalid, tools::text_of("the camera stood still: it moved by %.1f cm and turned by %.1f deg in %zu frames; a map needs a walk",
+                                              100 * moved_m, tools::degrees(turned_rad), result.poses.size())};
 }
 
 const char* WalkCheck::weakness_of(const Note& note) const {

@@ -4,23 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <numbers>
+
+#include "tools/common/text_format.h"
 
 namespace camloc::map_tool {
 namespace {
 
-constexpr double kSamePlaceM = 2.0, kSameWayRad = std::numbers::pi / 3;
+using tools::text_of;
 
-[[gnu::format(printf, 1, 2)]] std::string text_of(const char* format, ...) {
-  char text[320];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
+constexpr double kSamePlaceM = 2.0, kSameWayRad = std::numbers::pi / 3;
 
 /// Larger is worse; places of one outlook are compared.
 double severity(const KeyframeLocalizability& place) {
