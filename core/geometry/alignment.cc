@@ -133,6 +133,14 @@ Alignment align(std::span<const PointPair> pairs, bool is_scale_free) {
 
 }  // namespace
 
+void add_pose_points(const Rigid3& T_a_camera, const Rigid3& T_b_camera, double lever_m, std::vector<PointPair>* pairs) {
+  pairs->push_back({T_a_camera.translation, T_b_camera.translation});
+  for (int axis = 0; axis < 3 && lever_m > 0; ++axis) {
+    const Eigen::Vector3d tip = lever_m * Eigen::Vector3d::Unit(axis);
+    pairs->push_back({T_a_camera * tip, T_b_camera * tip});
+  }
+}
+
 Alignment align_rigid(std::span<const PointPair> pairs) { return align(pairs, false); }
 Alignment align_similarity(std::span<const PointPair> pairs) { return align(pairs, true); }
 

@@ -45,6 +45,10 @@ struct Alignment {
   [[nodiscard]] Eigen::Vector3d map(const Eigen::Vector3d& p_b) const { return scale * (T_a_b.rotation * p_b) + T_a_b.translation; }
 };
 
+/// A pose in both frames as points: its centre, and with a lever > 0 a point that far along each axis, so that orientations
+/// count like positions at that distance.
+void add_pose_points(const Rigid3& T_a_camera, const Rigid3& T_b_camera, double lever_m, std::vector<PointPair>* pairs);
+
 [[nodiscard]] Alignment align_rigid(std::span<const PointPair> pairs);
 /// Also frees the scale. Points that are in one place keep scale 1.
 [[nodiscard]] Alignment align_similarity(std::span<const PointPair> pairs);

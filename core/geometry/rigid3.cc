@@ -68,6 +68,12 @@ Vector6d pose_error(const Rigid3& T_map_camera_true, const Rigid3& T_map_camera_
   return error;
 }
 
+Matrix6d rotate_covariance(const Eigen::Quaterniond& R_a_b, const Matrix6d& covariance_b) {
+  Matrix6d turn = Matrix6d::Zero();
+  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = R_a_b.toRotationMatrix();
+  return turn * covariance_b * turn.transpose();
+}
+
 Rigid3 interpolate(const Rigid3& from, const Rigid3& to, double fraction) {
   const Eigen::Vector3d turn = log_so3(to.rotation * from.rotation.conjugate());
   return {(exp_so3(fraction * turn) * from.rotation).normalized(),

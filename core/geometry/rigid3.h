@@ -48,6 +48,9 @@ struct Rigid3 {
 /// `map` (metres), then the rotation vector of R_true * R_estimate^-1, also in the axes of `map` (radians).
 [[nodiscard]] Vector6d pose_error(const Rigid3& T_map_camera_true, const Rigid3& T_map_camera_estimate);
 
+/// The covariance of pose_error() in axes a for one in axes b.
+[[nodiscard]] Matrix6d rotate_covariance(const Eigen::Quaterniond& R_a_b, const Matrix6d& covariance_b);
+
 /// Shortest path in rotation, straight line in translation; fraction 0 gives `from`.
 [[nodiscard]] Rigid3 interpolate(const Rigid3& from, const Rigid3& to, double fraction);
 

@@ -8,17 +8,12 @@ namespace camloc {
 
 PoseWithCovariance to_wcs(const WcsDatum& datum, const PoseWithCovariance& T_map_camera) {
   // With errors to the left, T_true = (p + dp, exp(dr) R): a turn dr of the datum moves the camera by dr x lever.
-  const Eigen::Matrix3d R_wcs_map = datum.T_wcs_map.rotation.toRotationMatrix();
-  const Eigen::Vector3d lever = R_wcs_map * T_map_camera.pose.translation;
+  const Eigen::Vector3d lever = datum.T_wcs_map.rotation.toRotationMatrix() * T_map_camera.pose.translation;
 
   Matrix6d from_datum = Matrix6d::Identity();
   from_datum.topRightCorner<3, 3>() << 0, lever.z(), -lever.y(), -lever.z(), 0, lever.x(), lever.y(), -lever.x(), 0;
-  Matrix6d from_pose = Matrix6d::Zero();
-  from_pose.topLeftCorner<3, 3>() = R_wcs_map;
-  from_pose.bottomRightCorner<3, 3>() = R_wcs_map;
-
   const Matrix6d covariance =
-      from_datum * datum.covariance * from_datum.transpose() + from_pose * T_map_camera.covariance * from_pose.transpose();
+      from_datum * datum.covariance * from_datum.transpose() + rotate_covariance(datum.T_wcs_map.rotation, T_map_camera.covariance);
   return {datum.T_wcs_map * T_map_camera.pose, 0.5 * (covariance + covariance.transpose())};
 }
 

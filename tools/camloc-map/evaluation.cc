@@ -74,11 +74,8 @@ std::vector<PointPair> pairs_of(const std::vector<ControlPair>& controls, const 
 std::vector<PointPair> pairs_of(const std::vector<PosePair>& poses, const Eigen::Vector3d& origin_m, bool has_axes) {
   std::vector<PointPair> pairs;
   for (const PosePair& pose : poses) {
-    pairs.push_back({pose.T_reference_camera.translation - origin_m, pose.T_map_camera.translation});
-    for (int axis = 0; axis < 3 && has_axes; ++axis) {
-      const Eigen::Vector3d tip = kPoseLeverM * Eigen::Vector3d::Unit(axis);
-      pairs.push_back({pose.T_reference_camera * tip - origin_m, pose.T_map_camera * tip});
-    }
+    const Rigid3 T_origin_camera{pose.T_reference_camera.rotation, pose.T_reference_camera.translation - origin_m};
+    add_pose_points(T_origin_camera, pose.T_map_camera, has_axes ? kPoseLeverM : 0, &pairs);
   }
   return pairs;
 }

@@ -47,12 +47,6 @@ double nees(const Pair& pair) {
   return error.dot(pair.covariance->ldlt().solve(error));
 }
 
-Matrix6d rotated(const Matrix6d& covariance, const Eigen::Quaterniond& rotation) {
-  Matrix6d R = Matrix6d::Zero();
-  R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = rotation.toRotationMatrix();
-  return R * covariance * R.transpose();
-}
-
 }  // namespace
 
 Rigid3 align_by_positions(const EstimatedTrajectory& estimate, const ReferencePose& reference) {
@@ -67,13 +61,7 @@ Rigid3 align_by_poses(const EstimatedTrajectory& estimate, const ReferencePose& 
   constexpr double kLeverM = 1.0;
   std::vector<PointPair> points;
   for (const EstimatedPose& pose : estimate.poses) {
-    const auto truth = reference(pose.stamp_ns);
-    if (!truth) continue;
-    points.push_back({truth->translation, pose.T_map_camera.translation});
-    for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::Vector3d lever = kLeverM * Eigen::Vector3d::Unit(axis);
-      points.push_back({*truth * lever, pose.T_map_camera * lever});
-    }
+    if (const auto truth = reference(pose.stamp_ns)) add_pose_points(*truth, pose.T_map_camera, kLeverM, &points);
   }
   return points.empty() ? Rigid3{} : align_rigid(points).T_a_b;
 }
@@ -90,7 +78,7 @@ TrajectoryErrors compare(const EstimatedTrajectory& estimate, const ReferencePos
     const auto truth = reference(pose.stamp_ns);
     if (!truth) continue;
     Pair& pair = pairs.emplace_back(Pair{*truth, T * pose.T_map_camera, pose.covariance});
-    if (pair.covariance) pair.covariance = rotated(*pair.covariance, T.rotation);
+    if (pair.covariance) pair.covariance = rotate_covariance(T.rotation, *pair.covariance);
   }
   errors.num_compared = pairs.size();
 
