@@ -7,11 +7,7 @@
 namespace camloc {
 namespace {
 
-Matrix6d turned(const Matrix6d& covariance, const Eigen::Quaterniond& rotation) {
-  Matrix6d turn = Matrix6d::Zero();
-  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = rotation.toRotationMatrix();
-  return turn * covariance * turn.transpose();
-}
+constexpr std::uint32_t kMinSurroundingShared = 30;  // landmarks that make a keyframe part of a place
 
 }  // namespace
 
@@ -29,14 +25,14 @@ std::optional<LoopMatch> LoopDetector::find(std::uint32_t keyframe, const PlaceI
   const auto best = std::max_element(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     return a.found.num_inliers() < b.found.num_inliers();
   });
-  if (best == candidates.end() || !is_convincing(best->found) || has_rival(*best, candidates)) return std::nullopt;
+  if (best == candidates.end() || !is_convincing(best->found, options_.place) || has_rival(*best, candidates)) return std::nullopt;
   const Rigid3 T_map_place = map_->keyframe(best->place).view.T_map_camera;
   LoopMatch match;
   match.keyframe = keyframe;
   match.place = best->place;
   match.strain = best->strain;
   match.T_place_keyframe = T_map_place.inverse() * best->found.T_map_camera;
-  match.covariance = turned(best->found.covariance, T_map_place.rotation.conjugate()) + diagonal_covariance(0.005, 0.002);
+  match.covariance = rotate_covariance(T_map_place.rotation.conjugate(), best->found.covariance) + diagonal_covariance(0.005, 0.002);
   match.T_correction = best->found.T_map_camera * query.view.T_map_camera.inverse();
   match.registration = std::move(best->found);
   return match;
@@ -72,11 +68,7 @@ std::vector<std::uint32_t> LoopDetector::nearby_keyframes(std::uint32_t keyframe
 }
 
 void LoopDetector::try_place(std::uint32_t keyframe, std::uint32_t place, bool is_nearby, std::vector<Candidate>* candidates) {
-  std::vector<std::uint32_t> keyframes = {place};
-  for (const CovisibleKeyframe& c : map_->covisible(place, 30)) {
-    if (keyframes.size() >= options_.keyframes_per_place) break;
-    if (c.keyframe != keyframe) keyframes.push_back(c.keyframe);
-  }
+  const auto keyframes = map_->surroundings(place, kMinSurroundingShared, options_.keyframes_per_place);
   place_landmarks_.assign(*map_, keyframes, options_.max_place_landmarks);
   const SlamKeyframe& query = map_->keyframe(keyframe);
   Registration found = is_nearby ? registration_->guided(query.view, &place_landmarks_, query.view.T_map_camera, options_.nearby_radius_px, query.frame)
@@ -86,18 +78,10 @@ void LoopDetector::try_place(std::uint32_t keyframe, std::uint32_t place, bool i
   if (strain <= DeadReckoning::kMaxStrain) candidates->push_back({place, strain, std::move(found)});
 }
 
-bool LoopDetector::is_convincing(const Registration& found) const {
-  return found.is_found && found.num_inliers() >= options_.min_inliers && found.inlier_ratio() >= options_.min_inlier_ratio &&
-         found.depth_agreement >= options_.min_depth_agreement && found.spread >= options_.min_spread;
-}
-
 bool LoopDetector::has_rival(const Candidate& best, const std::vector<Candidate>& candidates) const {
   return std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
     const bool is_comparable = map_->keyframe(other.place).segment == map_->keyframe(best.place).segment;
-    const bool is_elsewhere =
-        (other.found.T_map_camera.translation - best.found.T_map_camera.translation).norm() > options_.rival_distance_m ||
-        rotation_distance_rad(other.found.T_map_camera.rotation, best.found.T_map_camera.rotation) > options_.rival_angle_rad;
-    return is_comparable && is_elsewhere && other.found.num_inliers() > options_.max_rival_share * best.found.num_inliers();
+    return is_comparable && is_rival(other.found, best.found, options_.place);
   });
 }
 

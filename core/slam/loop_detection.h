@@ -49,7 +49,6 @@ class LoopDetector {
   [[nodiscard]] std::vector<std::uint8_t> linked_keyframes(std::uint32_t keyframe) const;
   [[nodiscard]] std::vector<std::uint32_t> nearby_keyframes(std::uint32_t keyframe, const std::vector<std::uint8_t>& is_linked) const;
   void try_place(std::uint32_t keyframe, std::uint32_t place, bool is_nearby, std::vector<Candidate>* candidates);
-  [[nodiscard]] bool is_convincing(const Registration& found) const;
   [[nodiscard]] bool has_rival(const Candidate& best, const std::vector<Candidate>& candidates) const;
 
   LoopOptions options_;

@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/slam/view_registration.h"
+
 namespace camloc {
 
 struct LoopOptions {
@@ -18,10 +20,7 @@ struct LoopOptions {
   std::size_t keyframes_per_place = 6;
   std::size_t max_place_landmarks = 3500;
   std::uint32_t max_shared = 20;         ///< a keyframe with more common landmarks is a neighbour, no loop
-  int min_inliers = 40;
-  double min_inlier_ratio = 0.4, min_depth_agreement = 0.7, min_spread = 0.15;
-  double max_rival_share = 0.6;          ///< inliers of another place, as a share of the best
-  double rival_distance_m = 0.5, rival_angle_rad = 0.35;   ///< another place lies at least this far from the best
+  PlaceLimits place;
   // How far dead reckoning may be off after walking some way.
   double drift_m = 0.05, drift_per_m = 0.01;
   double drift_rad = 0.03, drift_rad_per_m = 0.0005, drift_rad_per_rad = 0.01;

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/geometry/alignment.h"
+#include "core/slam/dead_reckoning.h"
 #include "core/slam/pose_graph.h"
 
 namespace camloc {
@@ -15,21 +16,13 @@ namespace {
 
 constexpr std::uint32_t kMinShared = 10;
 constexpr std::size_t kMaxLinks = 8;                // of a keyframe to others, the strongest
-constexpr double kLinkM = 0.006, kLinkRad = 0.005;  // what a link of full strength is good for
 constexpr double kFixM = 0.01, kFixRad = 0.004;     // what the covariance of a fix leaves out: landmarks have common errors
-constexpr double kMaxLooseness = 20;
 constexpr double kKernelSigmas = 3;
 constexpr double kAxisM = 2;  // points this far along a keyframe's axes stand for its rotation
 
-Matrix6d diagonal_covariance(double sigma_m, double sigma_rad) {
-  Matrix6d covariance = Matrix6d::Zero();
-  covariance.diagonal() << Eigen::Vector3d::Constant(sigma_m * sigma_m), Eigen::Vector3d::Constant(sigma_rad * sigma_rad);
-  return covariance;
-}
-
-PoseGraphEdge link(const std::vector<Rigid3>& T_map_pose, std::uint32_t i, std::uint32_t j, double looseness) {
+PoseGraphEdge link(const std::vector<Rigid3>& T_map_pose, std::uint32_t i, std::uint32_t j, std::uint32_t num_shared) {
   const Rigid3 T_i_j = T_map_pose[i].inverse() * T_map_pose[j];
-  return {i, j, T_i_j, diagonal_covariance(looseness * (kLinkM + 0.01 * T_i_j.translation.norm()), looseness * kLinkRad)};
+  return {i, j, T_i_j, link_covariance(T_i_j, num_shared)};
 }
 
 /// Which keyframes hang together (union-find).
@@ -58,8 +51,7 @@ void add_links(const MapData& b, PoseGraph* graph, Components* components) {
           covisible[other.keyframe].begin() + static_cast<std::ptrdiff_t>(std::min(kMaxLinks, covisible[other.keyframe].size())),
           [&](const SharedLandmarks& s) { return s.keyframe == k; });
       if (is_mutual && other.keyframe < k) continue;  // was added from the other side
-      graph->edges.push_back(
-          link(graph->T_map_pose, k, other.keyframe, std::clamp(150.0 / other.num_shared, 1.0, kMaxLooseness)));
+      graph->edges.push_back(link(graph->T_map_pose, k, other.keyframe, other.num_shared));
       components->join(k, other.keyframe);
     }
   }
@@ -85,7 +77,7 @@ void tie_loose_parts(std::span<const KeyframeFix> fixes, PoseGraph* graph, Compo
         to = j;
       }
     }
-    graph->edges.push_back(link(graph->T_map_pose, from, to, kMaxLooseness));
+    graph->edges.push_back(link(graph->T_map_pose, from, to, 0));
   }
 }
 

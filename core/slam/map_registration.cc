@@ -49,7 +49,6 @@ class MapRegistration {
   [[nodiscard]] Status keep_consistent(std::vector<KeyframeFix>* fixes) const;
   [[nodiscard]] std::vector<std::uint32_t> surroundings_of(std::uint32_t place) const;
   void assign_place(const std::vector<std::uint32_t>& keyframes);
-  [[nodiscard]] bool is_convincing(const Registration& found) const;
   [[nodiscard]] bool agree(const KeyframeFix& i, const KeyframeFix& j) const;
   [[nodiscard]] bool is_spread(const std::vector<KeyframeFix>& fixes) const;
   [[nodiscard]] const KeyframeFix& nearest_fix(const std::vector<KeyframeFix>& fixes, std::uint32_t keyframe) const;
@@ -120,11 +119,6 @@ void MapRegistration::assign_place(const std::vector<std::uint32_t>& keyframes) 
   place_.assign(a_, b_.camera.color, landmarks);
 }
 
-bool MapRegistration::is_convincing(const Registration& found) const {
-  return found.is_found && found.num_inliers() >= options_.min_inliers && found.inlier_ratio() >= options_.min_inlier_ratio &&
-         found.depth_agreement >= options_.min_depth_agreement && found.spread >= options_.min_spread;
-}
-
 std::optional<KeyframeFix> MapRegistration::find_anywhere(std::uint32_t keyframe) {
   const KeyframeView query = view_of_keyframe(b_, keyframe);
   std::vector<Registration> candidates;
@@ -143,13 +137,10 @@ std::optional<KeyframeFix> MapRegistration::find_anywhere(std::uint32_t keyframe
   const auto best = std::max_element(candidates.begin(), candidates.end(), [](const Registration& i, const Registration& j) {
     return i.num_inliers() < j.num_inliers();
   });
-  if (best == candidates.end() || !is_convincing(*best)) return std::nullopt;
-  for (const Registration& other : candidates) {
-    const bool is_elsewhere =
-        (other.T_map_camera.translation - best->T_map_camera.translation).norm() > options_.rival_distance_m ||
-        rotation_distance_rad(other.T_map_camera.rotation, best->T_map_camera.rotation) > options_.rival_angle_rad;
-    if (is_elsewhere && other.num_inliers() > options_.max_rival_share * best->num_inliers()) return std::nullopt;
-  }
+  if (best == candidates.end() || !is_convincing(*best, options_.place)) return std::nullopt;
+  const bool has_rival = std::any_of(candidates.begin(), candidates.end(),
+                                     [&](const Registration& other) { return is_rival(other, *best, options_.place); });
+  if (has_rival) return std::nullopt;
   return KeyframeFix{keyframe, best->T_map_camera, best->covariance, best->num_inliers()};
 }
 
@@ -167,7 +158,7 @@ std::optional<KeyframeFix> MapRegistration::find_around(std::uint32_t keyframe, 
   assign_place(keyframes);
   const Registration found = registration_.guided(view_of_keyframe(b_, keyframe).view, &place_, T_a_camera_predicted,
                                                   options_.guided_radius_px, keyframe);
-  if (!is_convincing(found)) return std::nullopt;
+  if (!is_convincing(found, options_.place)) return std::nullopt;
   return KeyframeFix{keyframe, found.T_map_camera, found.covariance, found.num_inliers()};
 }
 

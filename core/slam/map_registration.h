@@ -29,10 +29,7 @@ struct MapRegistrationOptions {
   std::uint32_t keyframes_per_place = 6;
   std::uint32_t max_place_landmarks = 3000;
   std::uint32_t min_shared = 20;  ///< landmarks that make two keyframes neighbours
-  int min_inliers = 30;
-  double min_inlier_ratio = 0.3, min_depth_agreement = 0.6, min_spread = 0.15;
-  double max_rival_share = 0.6;                           ///< inliers of another place, as a share of the best
-  double rival_distance_m = 0.5, rival_angle_rad = 0.35;  ///< another place lies at least this far from the best
+  PlaceLimits place{.min_inliers = 30, .min_inlier_ratio = 0.3, .min_depth_agreement = 0.6};
   // How far two fixes may differ in the motion between the maps: they are bent against each other by their drift.
   double agreement_m = 0.10, agreement_rad = 0.04;
   double drift_per_m = 0.02, drift_rad_per_m = 0.002;  ///< more for each metre between them

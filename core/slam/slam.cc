@@ -3,7 +3,6 @@
 #include "core/slam/slam.h"
 
 #include <algorithm>
-#include <map>
 
 #include "core/geometry/pose_refinement.h"
 #include "core/slam/keyframe_insertion.h"
@@ -76,12 +75,12 @@ bool Slam::begin_segment(std::uint64_t frame, ViewFeatures view, ViewReport* rep
     begin.gap_s = 1e-9 * static_cast<double>(view.stamp_ns - tracked_.back().stamp_ns);
   }
   loops_.begin_segment(begin);
-  segment_ = counts_.num_segments++;
+  const std::uint32_t segment = counts_.num_segments++;
   view.T_map_camera = {};
   num_lost_in_a_row_ = 0;
   report->state = ViewState::kTracked;
   report->has_begun_segment = report->is_keyframe = true;
-  const std::uint32_t keyframe = insert_keyframe(frame, segment_, view, {}, &map_);
+  const std::uint32_t keyframe = insert_keyframe(frame, segment, view, {}, &map_);
   places_.add(view.features.descriptors);
   tracker_.set_reference(keyframe);
   tracker_.accept(view.stamp_ns, view.T_map_camera);
@@ -101,12 +100,8 @@ void Slam::add_keyframe(std::uint64_t frame, ViewFeatures view, const Registrati
   adjust_locally(bundle_options(), options_.local_adjustment, keyframe, &map_);
   if (options_.close_loops) {
     report->loop = loops_.consider(keyframe, places_);
-    if (report->loop.is_closed) {
-      ++counts_.num_loops;
-      adjust_locally(bundle_options(), options_.local_adjustment, keyframe, &map_);
-    }
-    if (report->loop.is_joined) ++counts_.num_joined;
-    if (report->loop.is_refused) ++counts_.num_loops_refused;
+    count(report->loop);
+    if (report->loop.is_closed) adjust_locally(bundle_options(), options_.local_adjustment, keyframe, &map_);
   }
   places_.add(view.features.descriptors);
   tracker_.refresh();
@@ -164,7 +159,7 @@ Rigid3 Slam::final_pose(const TrackedView& view) const {
   return is_better ? refined.T_map_camera : T_map_camera;
 }
 
-// What was not known yet when a segment was processed may join it now; then its other keyframes may find what they overlap with,
+// What was not known yet when a segment was processed may join it now; then its keyframes may find what else they overlap with,
 // and the more of them do, the better the segment is turned into place.
 void Slam::join_leftover_segments() {
   if (!options_.close_loops || counts_.num_segments == counts_.num_joined + 1) return;
@@ -173,15 +168,18 @@ void Slam::join_leftover_segments() {
   for (std::uint32_t k = 0; k < map_.keyframes().size(); ++k) {
     if (map_.keyframe(k).segment != main_segment) leftover.push_back(k);
   }
-  for (int round = 0; round < 2; ++round) {
-    for (const std::uint32_t k : leftover) {
-      const bool is_joined_already = map_.keyframe(k).segment == main_segment;
-      if (is_joined_already != (round == 1)) continue;
-      const LoopReport report = loops_.consider(k, places_);
-      if (report.is_joined) ++counts_.num_joined;
-      if (report.is_closed && !report.is_joined) ++counts_.num_loops;
-    }
+  for (const std::uint32_t k : leftover) {
+    if (map_.keyframe(k).segment != main_segment) count(loops_.consider(k, places_));
   }
+  for (const std::uint32_t k : leftover) {
+    if (map_.keyframe(k).segment == main_segment) count(loops_.consider(k, places_));
+  }
+}
+
+void Slam::count(const LoopReport& loop) {
+  if (loop.is_closed) ++counts_.num_loops;
+  if (loop.is_joined) ++counts_.num_joined;
+  if (loop.is_refused) ++counts_.num_loops_refused;
 }
 
 SlamResult Slam::finish(const BundleCallback& on_iteration) {

@@ -116,6 +116,7 @@ class Slam {
   bool begin_segment(std::uint64_t frame, ViewFeatures view, ViewReport* report);
   void add_keyframe(std::uint64_t frame, ViewFeatures view, const Registration& tracked, ViewReport* report);
   void join_leftover_segments();
+  void count(const LoopReport& loop);
   void remember(std::uint64_t frame, const ViewFeatures& view, const Registration& tracked, bool is_keyframe);
   [[nodiscard]] BundleOptions bundle_options() const;
   [[nodiscard]] SlamResult result() const;
@@ -131,7 +132,6 @@ class Slam {
   std::vector<TrackedView> tracked_;
   std::map<std::uint32_t, MapFit> fits_;   ///< of the segments, after finish()
   SlamCounts counts_;
-  std::uint32_t segment_ = 0;
   int num_lost_in_a_row_ = 0;
 };
 

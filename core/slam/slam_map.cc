@@ -147,6 +147,15 @@ std::vector<CovisibleKeyframe> SlamMap::covisible(std::uint32_t keyframe, std::u
   return result;
 }
 
+std::vector<std::uint32_t> SlamMap::surroundings(std::uint32_t keyframe, std::uint32_t min_shared, std::size_t max_keyframes) const {
+  std::vector<std::uint32_t> keyframes = {keyframe};
+  for (const CovisibleKeyframe& c : covisible(keyframe, min_shared)) {
+    if (keyframes.size() >= max_keyframes) break;
+    keyframes.push_back(c.keyframe);
+  }
+  return keyframes;
+}
+
 void SlamMap::join_segments(std::uint32_t from, std::uint32_t into, const Rigid3& T_into_from) {
   for (SlamLandmark& landmark : landmarks_) {
     if (!landmark.is_alive() || keyframes_[landmark.sightings.front().keyframe].segment != from) continue;

@@ -68,6 +68,8 @@ class SlamMap {
 
   /// Keyframes that share at least `min_shared` landmarks with this one, most first; ties by index.
   [[nodiscard]] std::vector<CovisibleKeyframe> covisible(std::uint32_t keyframe, std::uint32_t min_shared) const;
+  /// A keyframe and those that share at least `min_shared` landmarks with it, most first, at most `max_keyframes` in all.
+  [[nodiscard]] std::vector<std::uint32_t> surroundings(std::uint32_t keyframe, std::uint32_t min_shared, std::size_t max_keyframes) const;
   /// Moves all keyframes of a segment, and what they saw, into the frame of another one.
   void join_segments(std::uint32_t from, std::uint32_t into, const Rigid3& T_into_from);
 

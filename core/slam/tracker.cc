@@ -58,12 +58,7 @@ Rigid3 Tracker::predict(std::int64_t stamp_ns) const {
 
 void Tracker::update_local_set() {
   if (!is_local_set_stale_) return;
-  std::vector<std::uint32_t> keyframes = {reference_};
-  for (const CovisibleKeyframe& c : map_->covisible(reference_, 10)) {
-    if (keyframes.size() >= options_.num_local_keyframes) break;
-    keyframes.push_back(c.keyframe);
-  }
-  local_.assign(*map_, keyframes, options_.max_local_landmarks);
+  local_.assign(*map_, map_->surroundings(reference_, 10, options_.num_local_keyframes), options_.max_local_landmarks);
   is_local_set_stale_ = false;
 }
 
@@ -107,12 +102,7 @@ Registration Tracker::find_back(const ViewFeatures& view, const PlaceIndex& plac
   for (const RankedPlace& place : places.query(view.features.descriptors, 4 * kPlacesTried)) {
     if (map_->keyframe(place.keyframe).segment != segment) continue;
     if (num_tried++ == kPlacesTried) break;
-    std::vector<std::uint32_t> keyframes = {place.keyframe};
-    for (const CovisibleKeyframe& c : map_->covisible(place.keyframe, 15)) {
-      if (keyframes.size() >= kKeyframesPerPlace) break;
-      keyframes.push_back(c.keyframe);
-    }
-    place_.assign(*map_, keyframes, options_.max_local_landmarks);
+    place_.assign(*map_, map_->surroundings(place.keyframe, 15, kKeyframesPerPlace), options_.max_local_landmarks);
     const Registration found = registration_->unguided(view, &place_, seed);
     if (!is_plausible(found, view.stamp_ns) || found.num_inliers() <= best.num_inliers()) continue;
     best = found;

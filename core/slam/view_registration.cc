@@ -24,6 +24,18 @@ PnpRansacOptions ransac_options(const RegistrationOptions& options) {
 
 }  // namespace
 
+bool is_convincing(const Registration& found, const PlaceLimits& limits) {
+  return found.is_found && found.num_inliers() >= limits.min_inliers && found.inlier_ratio() >= limits.min_inlier_ratio &&
+         found.depth_agreement >= limits.min_depth_agreement && found.spread >= limits.min_spread;
+}
+
+bool is_rival(const Registration& other, const Registration& best, const PlaceLimits& limits) {
+  const bool is_elsewhere =
+      (other.T_map_camera.translation - best.T_map_camera.translation).norm() > limits.rival_distance_m ||
+      rotation_distance_rad(other.T_map_camera.rotation, best.T_map_camera.rotation) > limits.rival_angle_rad;
+  return is_elsewhere && other.num_inliers() > limits.max_rival_share * best.num_inliers();
+}
+
 ViewRegistration::ViewRegistration(const RgbdCamera& camera, float scale_factor, const RegistrationOptions& options)
     : camera_(camera),
       options_(options),

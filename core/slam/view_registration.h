@@ -45,6 +45,19 @@ struct Registration {
   [[nodiscard]] double inlier_ratio() const { return num_matches == 0 ? 0 : static_cast<double>(num_inliers()) / num_matches; }
 };
 
+/// When a registration to a place far back in time is believed: looks alone are not enough, buildings repeat themselves.
+struct PlaceLimits {
+  int min_inliers = 40;
+  double min_inlier_ratio = 0.4, min_depth_agreement = 0.7, min_spread = 0.15;
+  double max_rival_share = 0.6;                            ///< inliers of another place, as a share of the best
+  double rival_distance_m = 0.5, rival_angle_rad = 0.35;   ///< another place lies at least this far from the best
+};
+
+/// Enough landmarks fit, with pixels and with depth, spread over the image.
+[[nodiscard]] bool is_convincing(const Registration& found, const PlaceLimits& limits);
+/// `other` explains the view nearly as well as `best`, from another pose in the same frame.
+[[nodiscard]] bool is_rival(const Registration& other, const Registration& best, const PlaceLimits& limits);
+
 /// Not thread-safe. The same input gives the same bits.
 class ViewRegistration {
  public:
