@@ -69,43 +69,51 @@ std::string url_of(const std::string& folder, const std::vector<std::uint64_t>& 
   return "replay://" + folder + "?frames=" + slices_of(frames);
 }
 
+struct Selection {
+  std::string folder;
+  Sequence sequence;
+  std::vector<std::size_t> frames;   ///< indices in the sequence, ascending
+};
+
+Result<Selection> select(const PosedFramesRequest& request) {
+  const auto folder = folder_of(request.sequence);
+  if (!folder.is_ok()) return folder.status();
+  auto sequence = read_sequence(folder.value());
+  if (!sequence.is_ok()) return sequence.status();
+  auto frames = select_frames(request.include, request.exclude, sequence->frames.size());
+  if (!frames.is_ok()) return frames.status();
+  return Selection{folder.value(), std::move(sequence).value(), std::move(frames).value()};
+}
+
 }  // namespace
 
 Result<SelectedFrames> find_frames(const PosedFramesRequest& request) {
-  const auto folder = folder_of(request.sequence);
-  if (!folder.is_ok()) return folder.status();
-  const auto sequence = read_sequence(folder.value());
-  if (!sequence.is_ok()) return sequence.status();
-  const auto selected = select_frames(request.include, request.exclude, sequence.value().frames.size());
-  if (!selected.is_ok()) return selected.status();
+  const auto selection = select(request);
+  if (!selection.is_ok()) return selection.status();
   SelectedFrames result;
-  result.folder = folder.value();
-  result.num_recorded = sequence.value().frames.size();
-  result.num_selected = selected.value().size();
-  for (const SequenceFrame& frame : sequence.value().frames) result.has_depth = result.has_depth || !frame.depth_path.empty();
-  result.url = url_of(folder.value(), {selected.value().begin(), selected.value().end()});
+  result.folder = selection->folder;
+  result.num_recorded = selection->sequence.frames.size();
+  result.num_selected = selection->frames.size();
+  for (const SequenceFrame& frame : selection->sequence.frames) result.has_depth = result.has_depth || !frame.depth_path.empty();
+  result.url = url_of(selection->folder, {selection->frames.begin(), selection->frames.end()});
   return result;
 }
 
 Result<PosedFrames> find_posed_frames(const PosedFramesRequest& request, const RgbdCamera& camera) {
-  const auto folder = folder_of(request.sequence);
-  if (!folder.is_ok()) return folder.status();
-  const auto sequence = read_sequence(folder.value());
-  if (!sequence.is_ok()) return sequence.status();
-  const auto selected = select_frames(request.include, request.exclude, sequence.value().frames.size());
-  if (!selected.is_ok()) return selected.status();
+  const auto selection = select(request);
+  if (!selection.is_ok()) return selection.status();
   PosedFrames result;
-  const auto poses = recorded_poses(request, sequence.value(), camera, &result.scale);
+  const auto poses = recorded_poses(request, selection->sequence, camera, &result.scale);
   if (!poses.is_ok()) return poses.status();
 
   const bool are_embedded = request.poses == "embedded";
   const bool are_of_depth = request.pose_camera == PoseCamera::kDepth ||
                             (request.pose_camera == PoseCamera::kAuto && are_embedded && camera.poses_are_of_depth_camera);
   const Rigid3 T_recorded_color = are_of_depth ? camera.T_color_depth.inverse() : Rigid3{};
-  result.folder = folder.value();
-  result.num_recorded = sequence.value().frames.size();
-  result.num_selected = selected.value().size();
-  for (const std::size_t index : selected.value()) {
+  result.folder = selection->folder;
+  result.num_recorded = selection->sequence.frames.size();
+  result.num_selected = selection->frames.size();
+  for (const std::size_t index : selection->frames) {
     if (const auto& T_map_recorded = poses.value()[index]) {
       result.T_map_camera_of_frame.emplace(index, *T_map_recorded * T_recorded_color);
     } else {
@@ -119,7 +127,7 @@ Result<PosedFrames> find_posed_frames(const PosedFramesRequest& request, const R
   }
   std::vector<std::uint64_t> with_pose;
   for (const auto& [frame, T_map_camera] : result.T_map_camera_of_frame) with_pose.push_back(frame);
-  result.url = url_of(folder.value(), with_pose);
+  result.url = url_of(selection->folder, with_pose);
   return result;
 }
 
