@@ -12,6 +12,8 @@
 
 #include "core/geometry/gravity.h"
 
+#include "core/base/order_statistics.h"
+
 namespace camloc {
 namespace {
 
@@ -37,9 +39,7 @@ struct Plane {
 double median_height(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up) {
   std::vector<double> heights;
   for (const Eigen::Vector3d& p : points) heights.push_back(up.dot(p));
-  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-  std::nth_element(heights.begin(), middle, heights.end());
-  return *middle;
+  return upper_median(std::move(heights));
 }
 
 /// Finite points below the cameras, at most `max_points` of them.

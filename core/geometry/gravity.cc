@@ -9,6 +9,8 @@
 #include <cmath>
 #include <string>
 
+#include "core/base/order_statistics.h"
+
 namespace camloc {
 namespace {
 
@@ -21,12 +23,6 @@ constexpr double kMaxRoughAngleCosine = 0.5;  ///< 60 degrees
 constexpr double kMinScatterRatio = 1.3;
 
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Unit vectors up, one per reading that is no push.
 std::vector<Eigen::Vector3d> directions_up(std::span<const OrientedReading> readings, const AccelerometerOptions& options) {
@@ -72,7 +68,7 @@ RobustMean robust_mean(const std::vector<Eigen::Vector3d>& directions) {
   const Eigen::Vector3d center = median_direction(directions);
   std::vector<double> angles;
   for (const Eigen::Vector3d& direction : directions) angles.push_back(angle_between(direction, center));
-  result.median_angle_rad = median(angles);
+  result.median_angle_rad = upper_median(angles);
   // The angle of a two-dimensional normal error has its median at 1.18 sigma; three sigma hold 99 % of them.
   const double limit = std::max(1e-6, 3 * result.median_angle_rad / 1.18);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/base/order_statistics.h"
 #include "core/features/matcher.h"
 #include "core/geometry/correspondences.h"
 #include "core/geometry/pnp_ransac.h"
@@ -78,9 +79,7 @@ double median_normalized_square(const std::vector<double>& errors, const std::ve
   std::vector<double> values;
   for (std::size_t i = 0; i < errors.size(); ++i)
     values.push_back(errors[i] * errors[i] / std::max(variances[i] + added_variance, 1e-300));
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return upper_median(std::move(values));
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/order_statistics.h"
+
 namespace camloc {
 namespace {
 
@@ -125,13 +127,6 @@ std::uint64_t remove_outliers(const BundleOptions& bundle, const Extract& extrac
   return num_removed;
 }
 
-double quantile(std::vector<double>* values, double share) {
-  if (values->empty()) return 0;
-  const auto at = values->begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values->size() - 1));
-  std::nth_element(values->begin(), at, values->end());
-  return *at;
-}
-
 MapFit measure_fit(const BundleOptions& bundle, const Extract& extract) {
   MapFit fit;
   std::vector<double> pixels, sigmas, metres;
@@ -144,10 +139,10 @@ MapFit measure_fit(const BundleOptions& bundle, const Extract& extract) {
     metres.push_back(sigmas.back() * bundle.depth_noise.sigma_m(o.depth_m));
   }
   fit.num_sightings = residuals.size();
-  fit.median_px = quantile(&pixels, 0.5);
-  fit.p90_px = quantile(&pixels, 0.9);
-  fit.median_depth_sigmas = quantile(&sigmas, 0.5);
-  fit.median_depth_m = quantile(&metres, 0.5);
+  fit.median_px = lower_quantile(pixels, 0.5);
+  fit.p90_px = lower_quantile(std::move(pixels), 0.9);
+  fit.median_depth_sigmas = lower_quantile(std::move(sigmas), 0.5);
+  fit.median_depth_m = lower_quantile(std::move(metres), 0.5);
   return fit;
 }
 

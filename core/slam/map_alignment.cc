@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/base/order_statistics.h"
 #include "core/geometry/alignment.h"
 #include "core/slam/dead_reckoning.h"
 #include "core/slam/pose_graph.h"
@@ -81,12 +82,6 @@ void tie_loose_parts(std::span<const KeyframeFix> fixes, PoseGraph* graph, Compo
   }
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Landmarks follow the mean of the keyframes that see them.
 void move_landmarks(const std::vector<Rigid3>& T_a_keyframe, MapData* b) {
   std::vector<Eigen::Vector3d> sum(b->landmarks.size(), Eigen::Vector3d::Zero());
@@ -154,8 +149,8 @@ MapAlignmentReport align_map(std::span<const KeyframeFix> fixes, MapData* b) {
     residuals_m.push_back((T.translation - fix.T_a_camera.translation).norm());
     residuals_rad.push_back(rotation_distance_rad(T.rotation, fix.T_a_camera.rotation));
   }
-  report.residual_m = median(residuals_m);
-  report.residual_rad = median(residuals_rad);
+  report.residual_m = upper_median(residuals_m);
+  report.residual_rad = upper_median(residuals_rad);
   fit_rigid_part(*b, graph.T_map_pose, std::max(report.residual_m, 0.001), &report);
   move_landmarks(graph.T_map_pose, b);
   for (std::size_t k = 0; k < graph.T_map_pose.size(); ++k) b->keyframes[k].T_map_camera = graph.T_map_pose[k];

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/order_statistics.h"
+
 namespace camloc {
 namespace {
 
@@ -18,8 +20,7 @@ double median_depth_m(const ViewFeatures& view) {
     if (z > 0) depths.push_back(z);
   }
   if (depths.empty()) return 2.0;
-  std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
-  return depths[depths.size() / 2];
+  return upper_median(std::move(depths));
 }
 
 /// A share of the motion, or more than all of it.

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "core/base/order_statistics.h"
 #include "tools/camloc-map/consensus.h"
 
 namespace camloc::map_tool {
@@ -33,8 +34,7 @@ double median_scale(std::span<const PointPair> pairs) {
     }
   }
   if (ratios.empty()) return 1;
-  std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2), ratios.end());
-  return ratios[ratios.size() / 2];
+  return upper_median(std::move(ratios));
 }
 
 struct Unit {
@@ -68,8 +68,7 @@ double robust_residual_m(std::span<const PointPair> pairs) {
   const Alignment alignment = align_rigid(pairs);
   std::vector<double> residuals;
   for (const PointPair& pair : pairs) residuals.push_back((pair.p_a - alignment.map(pair.p_b)).norm());
-  std::nth_element(residuals.begin(), residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2), residuals.end());
-  return residuals[residuals.size() / 2];
+  return upper_median(std::move(residuals));
 }
 
 bool has_majority(const Consensus& consensus, std::size_t num_pairs) {

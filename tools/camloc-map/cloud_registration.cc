@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/order_statistics.h"
+
 namespace camloc::map_tool {
 namespace {
 
@@ -25,12 +27,6 @@ struct Correspondence {
   CloudIndex::Neighbor neighbor;
 };
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Normal equations of the plane distances; unknowns: rotation vector, translation, scale, about `center`.
 struct Equations {
   Matrix7d information = Matrix7d::Zero();
@@ -46,7 +42,7 @@ Equations build_equations(const std::vector<Correspondence>& pairs, CloudIndex* 
     residuals.push_back(plane.normal.dot(pair.p - plane.point_m));
     sizes.push_back(std::abs(residuals.back()));
   }
-  const double kernel_m = std::max(kMinKernelM, 2 * 1.4826 * median_of(sizes));
+  const double kernel_m = std::max(kMinKernelM, 2 * 1.4826 * upper_median(sizes));
   Equations equations;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const Eigen::Vector3d arm = pairs[i].p - center;

@@ -7,17 +7,11 @@
 #include <map>
 #include <numbers>
 
+#include "core/base/order_statistics.h"
 #include "tools/camloc-map/map_up.h"
 
 namespace camloc::map_tool {
 namespace {
-
-double quantile(std::vector<double> values, double fraction) {
-  if (values.empty()) return 0;
-  const auto rank = static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rank), values.end());
-  return values[rank];
-}
 
 /// Along an axis: landmarks from the 1st to the 99th percentile, and everything that was walked.
 Extent extent_along(const Scene& scene, const Eigen::Vector3d& axis) {
@@ -29,8 +23,8 @@ Extent extent_along(const Scene& scene, const Eigen::Vector3d& axis) {
   std::vector<double> values;
   for (const Eigen::Vector3d& p : scene.landmarks) values.push_back(axis.dot(p));
   if (!values.empty()) {
-    add(quantile(values, 0.01));
-    add(quantile(std::move(values), 0.99));
+    add(lower_quantile(values, 0.01));
+    add(lower_quantile(std::move(values), 0.99));
   }
   for (const auto* positions : {&scene.keyframes, &scene.walk}) {
     for (const Eigen::Vector3d& p : *positions) add(axis.dot(p));
@@ -71,8 +65,8 @@ Scene make_scene(const MapPicture& picture) {
     scene.landmarks.push_back(p);
     heights.push_back(height);
   }
-  scene.low_m = quantile(heights, 0.02);
-  scene.high_m = quantile(heights, 0.98);
+  scene.low_m = lower_quantile(heights, 0.02);
+  scene.high_m = lower_quantile(heights, 0.98);
   const std::span<const Rgb> ramp = paper_ramp();
   for (const double height : heights) {
     const double fraction = scene.high_m > scene.low_m ? std::clamp((height - scene.low_m) / (scene.high_m - scene.low_m), 0.0, 1.0) : 0.5;

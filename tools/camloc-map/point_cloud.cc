@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/order_statistics.h"
+
 namespace camloc::map_tool {
 namespace {
 
@@ -14,12 +16,6 @@ constexpr std::size_t kCompactAt = std::size_t{1} << 20;
 constexpr double kMaxCells = 1e9;  // from the origin; fits 32 bits
 constexpr double kMaxReachM = 1e7;
 constexpr std::size_t kMaxPercentileSamples = 200000;
-
-double median(std::vector<double>* values) {
-  const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
-  std::nth_element(values->begin(), middle, values->end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -60,7 +56,7 @@ void CloudAccumulator::start() {
   for (int axis = 0; axis < 3 && !first_points_m_.empty(); ++axis) {
     std::vector<double> values;
     for (const Eigen::Vector3d& p : first_points_m_) values.push_back(p[axis]);
-    cloud_.origin_m[axis] = std::floor(median(&values));
+    cloud_.origin_m[axis] = std::floor(upper_median(std::move(values)));
   }
   for (const Eigen::Vector3d& p : first_points_m_) store(p);
   first_points_m_ = {};

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/base/order_statistics.h"
 #include "tools/common/text_format.h"
 
 namespace camloc::map_tool {
@@ -35,13 +36,6 @@ bool is_mirrored(const MapView& map, const std::vector<KeyframeLocalizability>& 
   return is_same_place(map, places[a].rival->keyframe, b) || is_same_place(map, places[b].rival->keyframe, a);
 }
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 std::string centimetres(double metres) { return metres < 10 ? text_of("%.1f cm", 100 * metres) : std::string("unbounded"); }
 
 std::string format_share(const std::vector<KeyframeLocalizability>& places, FixOutlook outlook) {
@@ -53,7 +47,7 @@ std::string format_share(const std::vector<KeyframeLocalizability>& places, FixO
   }
   std::string line = text_of("%-28s%6zu of %zu keyframes %6.1f %%", words_for(outlook), landmarks.size(), places.size(),
                              100.0 * static_cast<double>(landmarks.size()) / static_cast<double>(std::max<std::size_t>(1, places.size())));
-  if (!landmarks.empty()) line += text_of("   median %.0f landmarks, expected sigma %s", median_of(landmarks), centimetres(median_of(sigmas)).c_str());
+  if (!landmarks.empty()) line += text_of("   median %.0f landmarks, expected sigma %s", upper_median(landmarks), centimetres(upper_median(sigmas)).c_str());
   return line + "\n";
 }
 
