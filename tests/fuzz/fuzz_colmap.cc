@@ -3,42 +3,21 @@
 //
 // Arbitrary text as one file of a COLMAP model beside two good ones; the first byte says which. A model that was read is
 // consistent and survives being written; an error is one line.
-#include <stdlib.h>
-
 #include <cstdint>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <string>
 
+#include "tests/fuzz/scratch_folder.h"
 #include "tools/camloc-map/colmap_model.h"
 
 namespace {
 
+using camloc::fuzz::ScratchFolder;
 using camloc::map_tool::ColmapModel;
 
 void require(bool condition) {
   if (!condition) std::abort();
 }
-
-class Scratch {
- public:
-  Scratch() {
-    std::string name = (std::filesystem::temp_directory_path() / "camloc_fuzz_XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  void write(const char* name, const std::string& text) const { std::ofstream(path_ / name, std::ios::binary) << text; }
-  [[nodiscard]] std::string path() const { return path_.string(); }
-
- private:
-  std::filesystem::path path_;
-};
 
 void check_consistent(const ColmapModel& model) {
   require(!model.cameras.empty() && !model.images.empty());
@@ -52,7 +31,7 @@ void check_consistent(const ColmapModel& model) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const Scratch scratch;
+  static const ScratchFolder scratch;
   if (size == 0) return 0;
   const std::string text(reinterpret_cast<const char*>(data) + 1, size - 1);
   scratch.write("cameras.txt", data[0] == 'c' ? text : "1 PINHOLE 640 480 500 500 320 240\n");

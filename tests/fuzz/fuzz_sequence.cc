@@ -2,18 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Arbitrary text as the index of a recording, as its poses, as a frame selection and as a URL. The first byte chooses.
-#include <stdlib.h>
-
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "drivers/frame_selection.h"
 #include "drivers/sequence.h"
 #include "drivers/source_url.h"
+#include "tests/fuzz/scratch_folder.h"
 
 namespace {
 
@@ -21,26 +18,12 @@ void require(bool condition) {
   if (!condition) std::abort();
 }
 
-/// One scratch folder for the whole run, with images to refer to.
-class Scratch {
+/// The scratch folder with images to refer to.
+class Scratch : public camloc::fuzz::ScratchFolder {
  public:
   Scratch() {
-    std::string name = (std::filesystem::temp_directory_path() / "camloc_fuzz_XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-    for (const char* file : {"a", "b", "c", "frame-000000.color.png"}) std::ofstream(path_ / file) << "x";
+    for (const char* file : {"a", "b", "c", "frame-000000.color.png"}) write(file, "x");
   }
-  ~Scratch() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  void write(const char* name, const std::string& text) const { std::ofstream(path_ / name, std::ios::binary) << text; }
-  void remove(const char* name) const { std::filesystem::remove(path_ / name); }
-  [[nodiscard]] std::string path() const { return path_.string(); }
-
- private:
-  std::filesystem::path path_;
 };
 
 void check_status(const camloc::Status& status) { require(status.message().find('\n') == std::string::npos); }
