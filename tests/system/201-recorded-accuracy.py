@@ -6,24 +6,8 @@
 The bars are those of the project, not of this data: within 5 cm / 5 deg inside the map, no misleading pose outside it.
 """
 import json
-import os
-import pathlib
-import subprocess
-import sys
-import tempfile
 
-CAMLOC = os.environ["CAMLOC"]
-CAMLOC_MAP = os.environ["CAMLOC_MAP"]
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
-CAMERAS = SOURCE / "config" / "cameras"
-DATA = pathlib.Path(os.environ.get("CAMLOC_DATA", SOURCE.parent / "shared" / "data"))
-SKIPPED = 77
-
-
-def run(*arguments):
-    done = subprocess.run([str(a) for a in arguments], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, f"{arguments}: exit {done.returncode}: {done.stderr}"
-    return done.stdout
+from recorded import CAMERAS, CAMLOC, CAMLOC_MAP, DATA, run, work_folder
 
 
 class Place:
@@ -92,11 +76,7 @@ def check_wrong_focal_length(kitchen, work):
 
 
 def main():
-    if not (DATA / "kitchen").is_dir():
-        print(f"skipped: no recorded sequences in {DATA}")
-        sys.exit(SKIPPED)
-    with tempfile.TemporaryDirectory(prefix="camloc_") as folder:
-        work = pathlib.Path(folder)
+    with work_folder() as work:
         kitchen, room = Place("kitchen", "7scenes.toml", work), Place("tum_fr1_rpy", "tum-fr1.toml", work)
         elsewhere = Place("elsewhere", "kinect-v1.toml", work)
         kitchen_map, room_map = kitchen.map("--exclude", "::50"), room.map()

@@ -6,24 +6,8 @@
 The reference of the kitchen is itself good to about 4 cm only; that of the office is motion capture.
 """
 import json
-import os
-import pathlib
-import subprocess
-import sys
-import tempfile
 
-CAMLOC = os.environ["CAMLOC"]
-CAMLOC_MAP = os.environ["CAMLOC_MAP"]
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
-CAMERAS = SOURCE / "config" / "cameras"
-DATA = pathlib.Path(os.environ.get("CAMLOC_DATA", SOURCE.parent / "shared" / "data"))
-SKIPPED = 77
-
-
-def run(*arguments):
-    done = subprocess.run([str(a) for a in arguments], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, f"{arguments}: exit {done.returncode}: {done.stderr}"
-    return done.stdout
+from recorded import CAMERAS, CAMLOC, CAMLOC_MAP, DATA, run, work_folder
 
 
 class Walk:
@@ -59,11 +43,7 @@ def mean_to_point_m(report):
 
 
 def main():
-    if not (DATA / "kitchen").is_dir():
-        print(f"skipped: no recorded sequences in {DATA}")
-        sys.exit(SKIPPED)
-    with tempfile.TemporaryDirectory(prefix="camloc_") as folder:
-        work = pathlib.Path(folder)
+    with work_folder() as work:
         kitchen = Walk("kitchen", "7scenes.toml", work)
         assert kitchen.summary["slam"]["lost"] == 0, kitchen.summary
         assert kitchen.trajectory_error_m() <= 0.05
