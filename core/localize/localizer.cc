@@ -13,13 +13,13 @@ constexpr std::int64_t kMaxTrackingGapNs = 1'000'000'000;
 /// For so long the last verified pose limits where the camera can be. Without that a stretch that looks alike at the other
 /// end of the corridor is taken for the real one right after a moment without features.
 constexpr std::int64_t kMotionMemoryNs = 5'000'000'000;
+/// A fix that contradicts it is believed once it has been found again and again for so long.
+constexpr std::int64_t kConfirmationNs = 1'000'000'000;
+constexpr std::int64_t kMaxConfirmationGapNs = 500'000'000;
 /// For so long a camera that was lost with its eyes open is not believed to be anywhere on thin evidence: after 5.5 s in a bare
 /// corridor of the synthetic building nine frames with about 30 inliers were taken for its twin 50 m away; true returns had 112
 /// and more.
 constexpr std::int64_t kLostMemoryNs = 60'000'000'000;
-/// A fix that contradicts it is believed once it has been found again and again for so long.
-constexpr std::int64_t kConfirmationNs = 1'000'000'000;
-constexpr std::int64_t kMaxConfirmationGapNs = 500'000'000;
 /// A hypothesis with fewer inliers is not even a coarse place.
 constexpr std::uint32_t kMinCoarseInliers = 15;
 
@@ -119,7 +119,8 @@ Localizer::Candidate Localizer::search_globally(const Frame& frame) {
 }
 
 // A handful of inliers on a repeated texture can be one tile off, and depth does not tell: such a pose must be where the
-// motion so far expects it. Strong evidence may contradict the prediction within what a camera can do.
+// motion so far expects it. Strong evidence may contradict the prediction within what a camera can do. When the motion is
+// forgotten only strong evidence counts, until the loss is so long ago that the camera may have been carried anywhere.
 bool Localizer::fits_motion(const Frame& frame, const PoseHypothesis& hypothesis) const {
   if (!is_recent(frame.stamp_ns, kLostMemoryNs)) return true;
   const bool is_thin = hypothesis.num_inliers < verification_.strong_inliers;
