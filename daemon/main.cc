@@ -56,7 +56,7 @@ int serve(const camloc::Config& config, const Arguments& arguments) {
   inputs.config = config;
   inputs.camera = std::move(camera).value();
   inputs.reload_config = [&arguments] { return camloc::load_config(arguments.config_path, arguments.settings); };
-  inputs.open_source = camloc::open_frame_source;
+  inputs.open_source = [](const std::string& url) { return camloc::open_frame_source(url); };
   camloc::Service service(std::move(inputs));
   if (const camloc::Status status = service.start(); !status) return refuse(status, 1);
   const int code = service.run();

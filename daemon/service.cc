@@ -180,7 +180,7 @@ void Service::adopt_source(const CaptureReport& report) {
   Result<RgbdCamera> camera = match_camera(in_.config, in_.camera, report.info);
   if (!camera) return fail(camera.status());
   camera_ = std::move(camera).value();
-  is_live_ = !report.info.num_frames.has_value();
+  is_live_ = report.info.stamp_clock == StampClock::kMonotonic;
   retry_map();
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 struct Scheme {
   const char* name;
-  Result<std::unique_ptr<FrameSource>> (*open)(const SourceUrl&);
+  Result<std::unique_ptr<FrameSource>> (*open)(const SourceUrl&, const FrameSourceOptions&);
   const char* help;
 };
 
@@ -26,12 +26,12 @@ constexpr Scheme kSchemes[] = {
 
 }  // namespace
 
-Result<std::unique_ptr<FrameSource>> open_frame_source(const std::string& url) {
+Result<std::unique_ptr<FrameSource>> open_frame_source(const std::string& url, const FrameSourceOptions& options) {
   const Result<SourceUrl> parsed = parse_source_url(url);
   if (!parsed) return parsed.status();
   std::string known;
   for (const Scheme& scheme : kSchemes) {
-    if (parsed->scheme == scheme.name) return scheme.open(*parsed);
+    if (parsed->scheme == scheme.name) return scheme.open(*parsed, options);
     known += std::string(known.empty() ? "" : ", ") + scheme.name + "://";
   }
   return Status(ErrorCode::kUnsupported, url + ": no frame source for " + parsed->scheme + "://; this build knows " + known);

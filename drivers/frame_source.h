@@ -17,12 +17,35 @@
 
 namespace camloc {
 
+/// What `stamp_ns` of a source's frames counts.
+enum class StampClock : std::uint8_t {
+  kRecorded,   ///< what the recording says: seconds since the epoch by convention, its age means nothing
+  kMonotonic,  ///< CLOCK_MONOTONIC of this machine, at the exposure
+};
+
 struct FrameSourceInfo {
   std::string description;                    ///< one line for people
+  std::string serial;                         ///< of the device, empty where it has none
   int color_width = 0, color_height = 0;      ///< known after open for recordings, else of the first frame
   int depth_width = 0, depth_height = 0;      ///< 0 without depth
   std::optional<std::uint64_t> num_frames;    ///< of a recording, after selection
   std::optional<RgbdCamera> camera;           ///< where the source knows its own calibration
+  StampClock stamp_clock = StampClock::kRecorded;
+};
+
+/// What a live source has seen go wrong since it was opened, and what else the device measures.
+struct FrameSourceHealth {
+  std::uint64_t packets_lost = 0;       ///< of the transport, where it counts them
+  std::uint64_t frames_incomplete = 0;  ///< begun but thrown away, because a part of them was missing
+  std::uint64_t frames_unpaired = 0;    ///< colour without depth of the same time, or depth without colour
+  double clock_drift_ppm = 0;           ///< how much faster the device's clock runs than CLOCK_MONOTONIC
+  /// Acceleration in the axes of the colour camera (x right, y down, z forward), m/s^2. At rest it is the reaction to gravity: it
+  /// points up.
+  std::optional<Eigen::Vector3d> acceleration;
+};
+
+struct FrameSourceOptions {
+  bool wants_color = false;  ///< fill FrameBuffer::color, too, where the source has colour
 };
 
 /// Not thread-safe; belongs to the thread that calls next().
@@ -33,13 +56,20 @@ class FrameSource {
   /// Fills `frame` (buffers are reused) with the next exposure. kTimeout: nothing arrived, try again; kEnd: a recording is
   /// over; kUnavailable: the device is gone, open again; kCorrupt: this one frame is broken, the next may be fine.
   [[nodiscard]] virtual Status next(FrameBuffer* frame, std::chrono::milliseconds timeout) = 0;
+
+  [[nodiscard]] virtual FrameSourceHealth health() const { return {}; }
+  /// Stops the streams and starts them again, against a device that is there but delivers nothing. kUnsupported: the source
+  /// knows no such thing; kUnavailable: it did not work, open again.
+  [[nodiscard]] virtual Status restart() { return {ErrorCode::kUnsupported, "this source cannot be restarted"}; }
+  /// Resets the device as if it were unplugged and plugged in. Afterwards the source is of no use: open again.
+  [[nodiscard]] virtual Status reset_device() { return {ErrorCode::kUnsupported, "this source cannot reset its device"}; }
 };
 
 /// `scheme://rest?key=value&...`; a bare path means replay://path.
 ///   replay://DIR   TUM RGB-D or 7-Scenes folder; speed=1 (0 = as fast as possible, the default), loop=0|1,
 ///                  frames=start:stop:step[,...] (Python slice rules), rate_hz= for folders without stamps (30)
 ///   sample://      generated images; rate_hz=, frames=, width=, height=
-[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_frame_source(const std::string& url);
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_frame_source(const std::string& url, const FrameSourceOptions& options = {});
 
 /// Schemes this build knows, with a line of help each.
 struct FrameSourceScheme {

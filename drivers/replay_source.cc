@@ -152,7 +152,7 @@ Result<FrameSourceInfo> describe(const Recording& recording) {
 
 }  // namespace
 
-Result<std::unique_ptr<FrameSource>> open_replay_source(const SourceUrl& url) {
+Result<std::unique_ptr<FrameSource>> open_replay_source(const SourceUrl& url, const FrameSourceOptions& /*options*/) {
   if (Status status = url.check_options({"speed", "loop", "frames", "exclude", "rate_hz"}); !status) return status;
   if (url.path.empty()) return Status(ErrorCode::kInvalid, url.text + ": no folder; expected replay://DIR");
   const Result<double> speed = url.number_option("speed", 0, 0, 1000);

@@ -14,6 +14,6 @@ namespace camloc {
 /// Options: speed (0 = as fast as possible, 1 = as recorded), loop, frames, exclude, rate_hz. A camera.toml in the folder
 /// becomes info().camera. A frame's sequence is its index in the whole recording; every further round of a loop adds the
 /// recording's number of frames to it and its length to the stamps.
-[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_replay_source(const SourceUrl& url);
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_replay_source(const SourceUrl& url, const FrameSourceOptions& options);
 
 }  // namespace camloc

@@ -145,7 +145,7 @@ void SampleRoom::render(const RgbdCamera& camera, const Rigid3& T_map_camera, Fr
   }
 }
 
-Result<std::unique_ptr<FrameSource>> open_sample_source(const SourceUrl& url) {
+Result<std::unique_ptr<FrameSource>> open_sample_source(const SourceUrl& url, const FrameSourceOptions& /*options*/) {
   if (Status status = url.check_options({"rate_hz", "frames", "width", "height"}); !status) return status;
   if (!url.path.empty() && url.path != "/") return Status(ErrorCode::kInvalid, url.text + ": sample:// takes no path, only options");
   const Result<double> rate_hz = url.number_option("rate_hz", 30, 0, 10000);

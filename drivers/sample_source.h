@@ -37,6 +37,6 @@ class SampleRoom {
 };
 
 /// Options: rate_hz (30; 0 = as fast as possible with stamps of 30 Hz), frames (0 = endless), width, height.
-[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_sample_source(const SourceUrl& url);
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_sample_source(const SourceUrl& url, const FrameSourceOptions& options);
 
 }  // namespace camloc

@@ -42,11 +42,16 @@ struct Image {
   [[nodiscard]] ImageView<T> view() const { return {pixels.data(), width, height, width}; }
 };
 
+/// One pixel of a colour image.
+struct Bgr {
+  std::uint8_t b = 0, g = 0, r = 0;
+};
+
 /// One exposure of an RGB-D camera. `depth` holds raw units of the depth camera (see RgbdCamera::depth_unit_m), in the
 /// depth camera's own pixels; it may be empty.
 struct Frame {
   std::uint64_t sequence = 0;  ///< counts exposures; for a recording the index of the frame in it
-  std::int64_t stamp_ns = 0;   ///< time of capture, nanoseconds since the epoch
+  std::int64_t stamp_ns = 0;   ///< time of capture, nanoseconds; the source says of which clock
   ImageView<std::uint8_t> gray;
   ImageView<std::uint16_t> depth;
 };
@@ -57,6 +62,7 @@ struct FrameBuffer {
   std::int64_t stamp_ns = 0;
   Image<std::uint8_t> gray;
   Image<std::uint16_t> depth;
+  Image<Bgr> color;  ///< empty unless the source was asked for it; localization does without
 
   [[nodiscard]] Frame view() const { return {sequence, stamp_ns, gray.view(), depth.view()}; }
 };

@@ -76,7 +76,7 @@ class ServiceTest : public ::testing::Test {
     inputs_.config.source_url = testing::sample_url(SampleMapOptions{}, "rate_hz=0");
     inputs_.config.source_lossless = true;
     inputs_.config.log_level = "error";
-    inputs_.open_source = open_frame_source;
+    inputs_.open_source = [](const std::string& url) { return open_frame_source(url); };
     inputs_.reload_config = [this] { return Result<Config>(inputs_.config); };
   }
   static void step_until_processed(Service& service, std::int64_t num_frames) {
