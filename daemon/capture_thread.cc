@@ -1,22 +1,44 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Open, stream, retry.
+// Open, stream, recover, retry.
 #include "daemon/capture_thread.h"
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "daemon/clock.h"
 
 namespace camloc {
+namespace {
+
+constexpr std::int64_t kHealthPeriod_ns = 200'000'000;
+
+std::string overdue_text(std::int64_t silence_ns, const char* step) {
+  return "no frame for " + std::to_string(silence_ns / 1'000'000) + " ms, " + step;
+}
+
+}  // namespace
+
+const char* to_string(CapturePhase phase) {
+  switch (phase) {
+    case CapturePhase::kOpening: return "opening";
+    case CapturePhase::kStreaming: return "streaming";
+    case CapturePhase::kStalled: return "stalled";
+    case CapturePhase::kUnavailable: return "missing";
+    case CapturePhase::kEnded: break;
+  }
+  return "ended";
+}
 
 CaptureThread::CaptureThread(const CaptureOptions& options, OpenSource open_source, int wake_fd)
     : shared_(std::make_shared<Shared>()) {
   shared_->options = options;
   shared_->open_source = std::move(open_source);
   shared_->wake_fd = wake_fd;
+  shared_->supervisor = CameraSupervisor(options.supervisor);
   thread_ = std::thread([shared = shared_] { shared->run(); });
 }
 
@@ -50,24 +72,47 @@ CaptureReport CaptureThread::report() const {
   return shared_->report;
 }
 
+CaptureCounts CaptureThread::counts() const {
+  const auto get = [](const auto& counter) { return counter.load(std::memory_order_relaxed); };
+  CaptureCounts counts;
+  counts.turns = get(shared_->turns);
+  counts.frames_received = get(shared_->frames_received);
+  counts.frames_corrupt = get(shared_->frames_corrupt);
+  counts.stalls = get(shared_->stalls);
+  counts.stream_restarts = get(shared_->stream_restarts);
+  counts.device_reopens = get(shared_->device_reopens);
+  counts.device_resets = get(shared_->device_resets);
+  counts.last_recovery_ns = get(shared_->last_recovery_ns);
+  return counts;
+}
+
+FrameSourceHealth CaptureThread::health() const {
+  const std::lock_guard lock(shared_->mutex);
+  return shared_->health;
+}
+
 void CaptureThread::Shared::run() {
   bool was_open = false;
   while (!should_stop) {
-    num_turns.fetch_add(1, std::memory_order_relaxed);
+    turns.fetch_add(1, std::memory_order_relaxed);
     Result<std::unique_ptr<FrameSource>> source = open_source(options.url);
     Status status = source.status();
     if (source) {
-      if (was_open) num_restarts.fetch_add(1, std::memory_order_relaxed);
+      if (was_open) device_reopens.fetch_add(1, std::memory_order_relaxed);
       was_open = true;
-      set_report(CapturePhase::kStreaming, &(*source)->info(), "");
+      supervisor.on_opened(monotonic_ns(), (*source)->info().stamp_clock == StampClock::kMonotonic);
+      const bool is_stalled = supervisor.is_stalled();
+      set_report(is_stalled ? CapturePhase::kStalled : CapturePhase::kStreaming, &(*source)->info(), is_stalled ? "open again, no frame yet" : "");
       status = stream(**source);
       source.value().reset();  // give the device back before pausing
     }
     if (should_stop) break;
+    if (status.is_ok()) continue;  // a step of recovery: open again at once
     if (status.code() == ErrorCode::kEnd) {
       set_report(CapturePhase::kEnded, nullptr, "");
       break;
     }
+    was_away = true;
     set_report(CapturePhase::kUnavailable, nullptr, status.message());
     pause();
   }
@@ -76,31 +121,87 @@ void CaptureThread::Shared::run() {
   changed.notify_all();
 }
 
-// Until the source fails (its status is returned), ends, or a stop is asked for.
+// Until the source fails or ends (its status is returned), is to be opened again (ok), or a stop is asked for.
 Status CaptureThread::Shared::stream(FrameSource& source) {
   while (!should_stop) {
-    num_turns.fetch_add(1, std::memory_order_relaxed);
+    turns.fetch_add(1, std::memory_order_relaxed);
     CapturedFrame& frame = mailbox.back();
-    const Status status = source.next(&frame.buffer, options.frame_timeout);
-    if (status.code() == ErrorCode::kTimeout) continue;
-    if (status.code() == ErrorCode::kCorrupt) {
-      num_corrupt.fetch_add(1, std::memory_order_relaxed);
+    const Status status = next_frame(source, &frame);
+    if (status) {
+      on_frame(source, &frame);
       continue;
     }
-    if (!status) return status;
-    frame.received_ns = monotonic_ns();
-    if (options.wait_for_reader) wait_for_reader();
-    num_received.fetch_add(1, std::memory_order_relaxed);
-    mailbox.publish();
-    wake();
+    if (status.code() == ErrorCode::kCorrupt) {
+      frames_corrupt.fetch_add(1, std::memory_order_relaxed);
+      supervisor.on_corrupt_frame(monotonic_ns());
+    } else if (status.code() != ErrorCode::kTimeout) {
+      return status;
+    }
+    const RecoveryStep step = supervisor.take_due_step(monotonic_ns());
+    if (step == RecoveryStep::kNone) continue;
+    if (const Status recovery = take_step(source, step); !recovery) supervisor.on_step_failed(monotonic_ns());
+    if (step != RecoveryStep::kRestartStream) return Status::ok();
   }
   return Status::ok();
+}
+
+// Waits no longer than until a frame is overdue, so that a stall is seen when it begins.
+Status CaptureThread::Shared::next_frame(FrameSource& source, CapturedFrame* frame) {
+  const std::int64_t now_ns = monotonic_ns();
+  read_health(source, now_ns);
+  const std::int64_t left_ms = supervisor.time_left_ns(now_ns) / 1'000'000 + 1;
+  return source.next(&frame->buffer, std::min(options.frame_timeout, std::chrono::milliseconds(std::min<std::int64_t>(left_ms, 60'000))));
+}
+
+void CaptureThread::Shared::on_frame(FrameSource& source, CapturedFrame* frame) {
+  const std::int64_t now_ns = monotonic_ns();
+  frame->received_ns = now_ns;
+  if (was_away && last_frame_ns != 0) last_recovery_ns.store(now_ns - last_frame_ns, std::memory_order_relaxed);
+  was_away = false;
+  last_frame_ns = now_ns;
+  if (supervisor.on_frame(now_ns)) {
+    last_recovery_ns.store(supervisor.last_recovery_ns(), std::memory_order_relaxed);
+    set_report(CapturePhase::kStreaming, &source.info(), "");
+  }
+  if (options.wait_for_reader) wait_for_reader();
+  frames_received.fetch_add(1, std::memory_order_relaxed);
+  mailbox.publish();
+  wake();
+}
+
+// Counted before it is taken: when the step hangs, the counters say where.
+Status CaptureThread::Shared::take_step(FrameSource& source, RecoveryStep step) {
+  const std::int64_t silence_ns = last_frame_ns == 0 ? 0 : monotonic_ns() - last_frame_ns;
+  switch (step) {
+    case RecoveryStep::kNone: break;
+    case RecoveryStep::kRestartStream:
+      stalls.fetch_add(1, std::memory_order_relaxed);
+      stream_restarts.fetch_add(1, std::memory_order_relaxed);
+      set_report(CapturePhase::kStalled, nullptr, overdue_text(silence_ns, "restarting the stream"));
+      return source.restart();
+    case RecoveryStep::kReopen:
+      set_report(CapturePhase::kStalled, nullptr, overdue_text(silence_ns, "opening the camera again"));
+      break;
+    case RecoveryStep::kResetDevice:
+      device_resets.fetch_add(1, std::memory_order_relaxed);
+      set_report(CapturePhase::kStalled, nullptr, overdue_text(silence_ns, "resetting the camera"));
+      return source.reset_device();
+  }
+  return Status::ok();
+}
+
+void CaptureThread::Shared::read_health(FrameSource& source, std::int64_t now_ns) {
+  if (now_ns - health_read_ns < kHealthPeriod_ns) return;
+  health_read_ns = now_ns;
+  const FrameSourceHealth current = source.health();
+  const std::lock_guard lock(mutex);
+  health = current;
 }
 
 // Polls: only recordings wait, and a millisecond is little against the localization of a frame.
 void CaptureThread::Shared::wait_for_reader() {
   while (mailbox.has_unread() && !should_stop) {
-    num_turns.fetch_add(1, std::memory_order_relaxed);
+    turns.fetch_add(1, std::memory_order_relaxed);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The thread that owns the frame source: opens it, fills the mailbox, opens it again when the device went away. It never
-// logs and never decides what a failure means; it reports, the main thread acts.
+// The thread that owns the frame source: opens it, fills the mailbox, does what the supervisor says when a camera falls
+// silent, opens it again when the device went away. It never logs; it reports and counts, the main thread tells people.
 #pragma once
 
 #include <atomic>
@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "core/base/result.h"
+#include "daemon/camera_supervisor.h"
 #include "daemon/frame_mailbox.h"
 #include "drivers/frame_source.h"
 
@@ -25,23 +26,39 @@ struct CaptureOptions {
   std::string url;
   bool wait_for_reader = false;                ///< hold a frame back until the last one was taken, instead of dropping
   std::chrono::milliseconds retry{1000};       ///< pause before the source is opened again
-  std::chrono::milliseconds frame_timeout{100};  ///< given to FrameSource::next(); bounds the time to stop
+  std::chrono::milliseconds frame_timeout{100};  ///< given to FrameSource::next() at most; bounds the time to stop
+  SupervisorOptions supervisor;
 };
 
 using OpenSource = std::function<Result<std::unique_ptr<FrameSource>>(const std::string& url)>;
 
 enum class CapturePhase : std::uint8_t {
   kOpening,      ///< first attempt, or just after a failure
-  kStreaming,    ///< open; frames may still be late
+  kStreaming,    ///< open; the first frame may still be to come
+  kStalled,      ///< open, but frames are overdue; being recovered
   kUnavailable,  ///< opening failed or the device went away; tried again
   kEnded,        ///< the recording is over; nothing more will come
 };
+
+/// One word for status messages, at most 15 letters: opening, streaming, stalled, missing, ended.
+[[nodiscard]] const char* to_string(CapturePhase phase);
 
 struct CaptureReport {
   CapturePhase phase = CapturePhase::kOpening;
   bool was_open = false;
   FrameSourceInfo info;  ///< of the source when it was last opened
-  std::string problem;   ///< one line while kUnavailable
+  std::string problem;   ///< one line while kStalled or kUnavailable
+};
+
+/// What the thread has seen and done since it started.
+struct CaptureCounts {
+  std::uint64_t turns = 0;           ///< rounds of its loop, also those that end in a time-out
+  std::uint64_t frames_received = 0, frames_corrupt = 0;
+  std::uint64_t stalls = 0;          ///< times a frame was overdue
+  std::uint64_t stream_restarts = 0;
+  std::uint64_t device_reopens = 0;  ///< opened anew after it had been open
+  std::uint64_t device_resets = 0;
+  std::int64_t last_recovery_ns = 0;  ///< of the last stall or absence: from the last frame before it to the first after
 };
 
 class CaptureThread {
@@ -60,10 +77,10 @@ class CaptureThread {
   [[nodiscard]] std::uint64_t report_number() const { return shared_->report_number.load(std::memory_order_acquire); }
   [[nodiscard]] CaptureReport report() const;
 
-  [[nodiscard]] std::uint64_t num_turns() const { return shared_->num_turns.load(std::memory_order_relaxed); }
-  [[nodiscard]] std::uint64_t num_received() const { return shared_->num_received.load(std::memory_order_relaxed); }
-  [[nodiscard]] std::uint64_t num_corrupt() const { return shared_->num_corrupt.load(std::memory_order_relaxed); }
-  [[nodiscard]] std::uint64_t num_restarts() const { return shared_->num_restarts.load(std::memory_order_relaxed); }
+  /// Cheap enough to ask for every frame.
+  [[nodiscard]] CaptureCounts counts() const;
+  /// Of the source, as of a fraction of a second ago.
+  [[nodiscard]] FrameSourceHealth health() const;
 
  private:
   /// Owned by both threads, so that an abandoned one never touches freed memory.
@@ -73,15 +90,29 @@ class CaptureThread {
     int wake_fd = -1;
     FrameMailbox mailbox;
     std::atomic<bool> should_stop{false};
-    std::atomic<std::uint64_t> report_number{0}, num_turns{0}, num_received{0}, num_corrupt{0}, num_restarts{0};
+    std::atomic<std::uint64_t> report_number{0};
+    std::atomic<std::uint64_t> turns{0}, frames_received{0}, frames_corrupt{0};
+    std::atomic<std::uint64_t> stalls{0}, stream_restarts{0}, device_reopens{0}, device_resets{0};
+    std::atomic<std::int64_t> last_recovery_ns{0};
+
+    // The thread's own.
+    CameraSupervisor supervisor{SupervisorOptions{}};
+    std::int64_t last_frame_ns = 0;     // 0 before the first
+    bool was_away = false;              // the device vanished since then
+    std::int64_t health_read_ns = 0;
 
     std::mutex mutex;  // the rest
     std::condition_variable changed;
     CaptureReport report;
+    FrameSourceHealth health;
     bool is_finished = false;
 
     void run();
     [[nodiscard]] Status stream(FrameSource& source);
+    [[nodiscard]] Status next_frame(FrameSource& source, CapturedFrame* frame);
+    void on_frame(FrameSource& source, CapturedFrame* frame);
+    [[nodiscard]] Status take_step(FrameSource& source, RecoveryStep step);
+    void read_health(FrameSource& source, std::int64_t now_ns);
     void wait_for_reader();
     void set_report(CapturePhase phase, const FrameSourceInfo* info, const std::string& problem);
     void pause();

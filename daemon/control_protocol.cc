@@ -101,7 +101,16 @@ std::string control_reply(const status_t& status) {
   json.add("reset_counter", status.reset_counter);
   json.add("map_reloads", status.map_reloads);
   json.add("map_reload_failures", status.map_reload_failures);
-  json.add("source_restarts", status.source_restarts);
+  json.add("camera_state", status.camera_state);
+  json.add("camera_stalls", status.camera_stalls);
+  json.add("stream_restarts", status.stream_restarts);
+  json.add("device_reopens", status.device_reopens);
+  json.add("device_resets", status.device_resets);
+  json.add("last_recovery_ms", status.last_recovery_ms);
+  json.add("packets_lost", status.packets_lost);
+  json.add("frames_incomplete", status.frames_incomplete);
+  json.add("frames_unpaired", status.frames_unpaired);
+  json.add("clock_drift_ppm", status.clock_drift_ppm);
   json.add("frame_rate_hz", status.frame_rate_hz);
   json.add("latency_p50_ms", status.latency_p50_ms);
   json.add("latency_max_ms", status.latency_max_ms);

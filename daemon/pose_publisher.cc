@@ -27,8 +27,8 @@ std::int32_t clip(Integer value) {
   return static_cast<std::int32_t>(value);
 }
 
-std::int32_t age_us(std::int64_t stamp_ns, const PoseContext& context) {
-  const std::int64_t age_ns = context.now_epoch_ns - stamp_ns;
+std::int32_t age_us(std::int64_t epoch_ns, const PoseContext& context) {
+  const std::int64_t age_ns = context.now_epoch_ns - epoch_ns;
   const bool is_known = context.is_capture_clock_ours && age_ns >= 0 && age_ns < kMaxAge_ns;
   return is_known ? clip(age_ns / 1000) : -1;
 }
@@ -59,7 +59,8 @@ Status probe_route(const std::string& url) {
 }  // namespace
 
 void fill_pose(const Localization& localization, const PoseContext& context, pose_t* message) {
-  message->utime = localization.stamp_ns / 1000;
+  const std::int64_t epoch_ns = localization.stamp_ns + context.stamp_to_epoch_ns;
+  message->utime = epoch_ns / 1000;
   message->sequence = static_cast<std::int64_t>(localization.sequence);
   message->map_id = static_cast<std::int64_t>(context.map_id);
   message->parent_frame = context.datum != nullptr ? "wcs" : "map";
@@ -74,7 +75,7 @@ void fill_pose(const Localization& localization, const PoseContext& context, pos
   message->reset_counter = clip(std::uint64_t{localization.reset_counter} + context.reset_offset);
   message->jump_m = localization.jump_m;
   for (std::size_t i = 0; i < localization.stage_ns.size(); ++i) message->latency_us[i] = clip(localization.stage_ns[i] / 1000);
-  message->age_us = age_us(localization.stamp_ns, context);
+  message->age_us = age_us(epoch_ns, context);
 
   PoseWithCovariance pose{Rigid3(), Matrix6d::Identity() * kUnknownVariance};
   if (localization.has_pose) pose = {localization.T_map_camera, localization.covariance};

@@ -34,6 +34,8 @@ struct PoseContext {
   std::uint64_t map_id = 0;
   const WcsDatum* datum = nullptr;  ///< set: poses are published in `wcs`
   std::uint32_t reset_offset = 0;   ///< resets before the current localizer
+  /// Added to a capture stamp it gives nanoseconds since the epoch: 0 for recordings, whose stamps are that by convention.
+  std::int64_t stamp_to_epoch_ns = 0;
   std::int64_t now_epoch_ns = 0;
   bool is_capture_clock_ours = true;  ///< false for recordings: their age means nothing
 };

@@ -19,12 +19,13 @@
 #include "core/map/mapping_guard.h"
 #include "daemon/clock.h"
 #include "daemon/service_setup.h"
+#include "drivers/camera_file.h"
 
 namespace camloc {
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr std::int64_t kTick_ns = 250'000'000;
+constexpr std::int64_t kTick_ns = 100'000'000;
 constexpr std::chrono::milliseconds kStopPatience{500};
 
 UniqueFd open_signals() {
@@ -146,15 +147,13 @@ void Service::on_tick() {
   const std::int64_t now_ns = monotonic_ns();
   feed_watchdog(now_ns);
   if (control_) control_->expire(now_ns);
+  check_camera(now_ns);
   if (now_ns < next_second_ns_) return;
   next_second_ns_ = now_ns + kSecond_ns;
 
   connect();
   if (map_.is_loaded()) check_map_file();
   retry_map();
-  if (is_streaming_ && now_ns - last_frame_ns_ > in_.config.source_stall_ms * 1'000'000) {
-    set_state(State::kNoCamera, "the camera is open but no frame arrives");
-  }
   board_.close_window(now_ns);
   publish_status();
   notifier_.status(board_.get().state_text.c_str());
@@ -175,24 +174,39 @@ std::string Service::on_control(ControlCommand command) {
   return control_reply(board_.get());
 }
 
+// The first source decides what poses are computed with; a device that was put in another's place brings its own calibration.
 void Service::adopt_source(const CaptureReport& report) {
-  if (!report.was_open || camera_) return;
+  if (!report.was_open) return;
+  is_live_ = report.info.stamp_clock == StampClock::kMonotonic;
+  if (report.info.description == adopted_source_ && camera_) return;
   Result<RgbdCamera> camera = match_camera(in_.config, in_.camera, report.info);
   if (!camera) return fail(camera.status());
+  adopted_source_ = report.info.description;
+  is_size_checked_ = false;
+  if (camera_ && format_camera_toml(*camera_) == format_camera_toml(*camera)) return;
+  if (camera_ && map_.is_loaded()) {
+    log_.info("another camera: the map is opened anew with its calibration");
+    map_.drop();
+  }
   camera_ = std::move(camera).value();
-  is_live_ = report.info.stamp_clock == StampClock::kMonotonic;
   retry_map();
 }
 
 void Service::on_phase(const CaptureReport& report) {
   is_streaming_ = report.phase == CapturePhase::kStreaming;
   is_over_ = report.phase == CapturePhase::kEnded;
+  const bool was_stalled = std::exchange(is_stalled_, report.phase == CapturePhase::kStalled);
+  board_.set_camera_state(to_string(report.phase));
   switch (report.phase) {
     case CapturePhase::kOpening: break;
     case CapturePhase::kStreaming:
       last_frame_ns_ = monotonic_ns();
       source_trouble_.clear();
-      log_.info("source open: %s", report.info.description.c_str());
+      log_.info("%s: %s", was_stalled ? "frames arrive again" : "source open", report.info.description.c_str());
+      break;
+    case CapturePhase::kStalled:
+      log_.warning("camera stalled: %s", report.problem.c_str());
+      set_state(State::kNoCamera, report.problem.c_str());
       break;
     case CapturePhase::kUnavailable:
       if (source_trouble_.is_new(report.problem)) log_.warning("no camera: %s", report.problem.c_str());
@@ -205,9 +219,18 @@ void Service::on_phase(const CaptureReport& report) {
   }
 }
 
+// What the capture thread cannot report itself: a driver that does not come back from a call, or brings nothing whole.
+void Service::check_camera(std::int64_t now_ns) {
+  constexpr std::int64_t kMargin_ns = 200'000'000;  // the capture thread is the first to say so
+  if (!is_live_ || !is_streaming_ || num_processed_ == 0) return;
+  if (now_ns - last_frame_ns_ <= in_.config.source_stall_ms * 1'000'000 + kMargin_ns) return;
+  set_state(State::kNoCamera, "the camera is open but no whole frame arrives");
+}
+
 void Service::on_frame(const CapturedFrame& captured) {
   const Frame frame = captured.buffer.view();
-  if (num_processed_ == 0) {
+  if (!is_size_checked_) {
+    is_size_checked_ = true;
     FrameSourceInfo first;
     first.color_width = frame.gray.width;
     first.color_height = frame.gray.height;
@@ -219,6 +242,7 @@ void Service::on_frame(const CapturedFrame& captured) {
   context.reset_offset = reset_offset_;
   context.is_capture_clock_ours = is_live_;
   context.now_epoch_ns = realtime_ns();
+  if (is_live_) context.stamp_to_epoch_ns = context.now_epoch_ns - monotonic_ns();
   if (map_.is_loaded()) {
     context.map_id = map_.info().map_id;
     if (in_.config.publish_frame == "wcs") context.datum = &*map_.info().wcs;
@@ -304,12 +328,7 @@ void Service::publish_status() {
 // What the capture thread counts, as of now: between two messages the control socket asks, too.
 void Service::refresh_counters() {
   status_t& counters = board_.counters();
-  if (capture_) {
-    counters.frames_received = static_cast<std::int64_t>(capture_->num_received());
-    counters.frames_dropped = static_cast<std::int64_t>(capture_->mailbox().num_dropped());
-    counters.frames_corrupt = static_cast<std::int64_t>(capture_->num_corrupt());
-    counters.source_restarts = static_cast<std::int64_t>(capture_->num_restarts());
-  }
+  if (capture_) board_.set_capture(capture_->counts(), capture_->health(), capture_->mailbox().num_dropped());
   counters.reset_counter = std::int64_t{reset_offset_} + num_resets_;
 }
 
@@ -321,8 +340,9 @@ void Service::feed_watchdog(std::int64_t now_ns) {
   counters.frames_processed = num_processed_;
   counters.is_capture_over = capture_ == nullptr || is_over_;
   if (capture_) {
-    counters.capture_turns = capture_->num_turns();
-    counters.frames_captured = capture_->num_received();
+    const CaptureCounts captured = capture_->counts();
+    counters.capture_turns = captured.turns;
+    counters.frames_captured = captured.frames_received;
   }
   if (!progress_.has_progressed(counters)) return;
   notifier_.watchdog();

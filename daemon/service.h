@@ -61,6 +61,7 @@ class Service {
   // Camera.
   void adopt_source(const CaptureReport& report);
   void on_phase(const CaptureReport& report);
+  void check_camera(std::int64_t now_ns);
   void on_frame(const CapturedFrame& frame);
   [[nodiscard]] const Localization& localize(const Frame& frame);
   void report_state(const Localization& localization);
@@ -95,7 +96,9 @@ class Service {
 
   std::optional<RgbdCamera> camera_;  // in use; known once the source was open
   bool is_live_ = false;              // capture stamps are of this machine's clock
-  bool is_streaming_ = false, is_over_ = false;
+  std::string adopted_source_;        // description of the device that camera_ belongs to
+  bool is_size_checked_ = false;      // of the frames of that device
+  bool is_streaming_ = false, is_stalled_ = false, is_over_ = false;
   std::uint64_t report_number_ = 0, num_processed_ = 0;
   Localization no_map_;               // published without a map
   std::uint32_t num_resets_ = 0;      // of the current localizer

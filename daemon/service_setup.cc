@@ -34,6 +34,8 @@ CaptureOptions capture_options(const Config& config) {
   options.url = config.source_url;
   options.wait_for_reader = config.source_lossless;
   options.retry = std::chrono::milliseconds(config.source_retry_ms);
+  options.supervisor.stall_ns = config.source_stall_ms * 1'000'000;
+  options.supervisor.first_frame_ns = std::max(options.supervisor.first_frame_ns, options.supervisor.stall_ns);
   return options;
 }
 

@@ -33,6 +33,7 @@ StatusBoard::StatusBoard(const std::string& source, const std::string& map_path,
   status_.source = source;
   status_.map_path = map_path;
   status_.state_text.reserve(kMaxStateText);
+  status_.camera_state = source.empty() ? "none" : to_string(CapturePhase::kOpening);
   status_.focal_scale = 1;
 }
 
@@ -51,6 +52,22 @@ bool StatusBoard::set_state(State state, const char* text) {
 void StatusBoard::set_map(const std::string& path, std::uint64_t map_id) {
   status_.map_path = path;
   status_.map_id = static_cast<std::int64_t>(map_id);
+}
+
+void StatusBoard::set_capture(const CaptureCounts& counts, const FrameSourceHealth& health, std::uint64_t num_dropped) {
+  const auto number = [](std::uint64_t count) { return static_cast<std::int64_t>(count); };
+  status_.frames_received = number(counts.frames_received);
+  status_.frames_corrupt = number(counts.frames_corrupt);
+  status_.frames_dropped = number(num_dropped);
+  status_.camera_stalls = number(counts.stalls);
+  status_.stream_restarts = number(counts.stream_restarts);
+  status_.device_reopens = number(counts.device_reopens);
+  status_.device_resets = number(counts.device_resets);
+  status_.last_recovery_ms = static_cast<double>(counts.last_recovery_ns) * 1e-6;
+  status_.packets_lost = number(health.packets_lost);
+  status_.frames_incomplete = number(health.frames_incomplete);
+  status_.frames_unpaired = number(health.frames_unpaired);
+  status_.clock_drift_ppm = health.clock_drift_ppm;
 }
 
 void StatusBoard::set_calibration(const CalibrationHealth& health) {

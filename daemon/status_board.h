@@ -10,6 +10,7 @@
 #include "camloc/status_t.hpp"
 #include "core/base/unique_fd.h"
 #include "core/localize/localization.h"
+#include "daemon/capture_thread.h"
 #include "daemon/latency_window.h"
 
 namespace camloc {
@@ -28,6 +29,8 @@ class StatusBoard {
   bool set_state(State state, const char* text);
   [[nodiscard]] State state() const { return static_cast<State>(status_.state); }
   void set_map(const std::string& path, std::uint64_t map_id);
+  void set_camera_state(const char* text) { status_.camera_state = text; }
+  void set_capture(const CaptureCounts& counts, const FrameSourceHealth& health, std::uint64_t num_dropped);
   void set_calibration(const CalibrationHealth& health);
 
   /// Closes the one-second window of rate and latency, and reads the process' memory.

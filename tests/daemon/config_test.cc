@@ -63,7 +63,7 @@ TEST(ConfigTest, PrintedConfigParsesBack) {
 
 TEST(ConfigTest, ErrorsNameFileLineAndReason) {
   EXPECT_EQ(error_of("[localize]\nfeatures = 99"), "test.toml:2: localize.features: 99 is out of range, 100 to 4000");
-  EXPECT_EQ(error_of("[source]\n\nstall_ms = 1"), "test.toml:3: source.stall_ms: 1 is out of range, 100 to 60000 ms");
+  EXPECT_EQ(error_of("[source]\n\nstall_ms = 1"), "test.toml:3: source.stall_ms: 1 is out of range, 50 to 60000 ms");
   EXPECT_EQ(error_of("[localize]\ntracking = 1"), "test.toml:2: localize.tracking: wants true or false");
   EXPECT_EQ(error_of("[localize]\nfeatures = \"many\""), "test.toml:2: localize.features: wants a whole number");
   EXPECT_EQ(error_of("[map]\npath = ''"), "test.toml:2: map.path: must not be empty");

@@ -105,6 +105,18 @@ TEST(FillPoseTest, AgeOfAnotherClockIsUnknown) {
   EXPECT_EQ(out.age_us, -1) << "a recording";
 }
 
+TEST(FillPoseTest, StampsOfTheMonotonicClockBecomeTimeSinceTheEpoch) {
+  Localization in = localized();
+  in.stamp_ns = 5'000'000'000;  // seconds after the machine was started
+  PoseContext context;
+  context.stamp_to_epoch_ns = 1'700'000'000'000'000'000;
+  context.now_epoch_ns = context.stamp_to_epoch_ns + in.stamp_ns + 12'000'000;
+  pose_t out{};
+  fill_pose(in, context, &out);
+  EXPECT_EQ(out.utime, 1'700'000'005'000'000);
+  EXPECT_EQ(out.age_us, 12'000);
+}
+
 TEST(FillPoseTest, NumbersAreClippedNotWrapped) {
   Localization in = localized();
   in.num_matches = std::numeric_limits<std::uint32_t>::max();

@@ -60,8 +60,8 @@ std::vector<std::string> warnings(const MonitorState& state) {
   if (status.map_reload_failures > 0) {
     texts.push_back(print("%lld map reloads refused, the old map is kept", static_cast<long long>(status.map_reload_failures)));
   }
-  if (status.source_restarts > 0)
-    texts.push_back(print("camera restarted %lld times", static_cast<long long>(status.source_restarts)));
+  if (status.device_reopens > 0)
+    texts.push_back(print("camera opened again %lld times", static_cast<long long>(status.device_reopens)));
   return texts;
 }
 
@@ -148,7 +148,7 @@ nlohmann::json status_json(const status_t& status) {
           {"reset_counter", status.reset_counter},
           {"map_reloads", status.map_reloads},
           {"map_reload_failures", status.map_reload_failures},
-          {"source_restarts", status.source_restarts},
+          {"device_reopens", status.device_reopens},
           {"frame_rate_hz", status.frame_rate_hz},
           {"latency_p50_ms", status.latency_p50_ms},
           {"latency_max_ms", status.latency_max_ms},
