@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// /sys/class/video4linux/videoN/device is the USB interface of a camera; the folders above it are the USB device, with its
+// serial, and its place on the bus.
+#include "drivers/v4l2/v4l2_list.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <system_error>
+
+#include "drivers/text.h"
+#include "drivers/v4l2/v4l2_pixel_format.h"
+
+namespace camloc {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMaxLevels = 8;           // from an interface to its device; two in practice
+constexpr std::size_t kMaxNodes = 256;  // minors of a character device
+
+std::string first_line(const fs::path& path) {
+  std::ifstream file(path);
+  char text[256] = {};
+  file.read(text, sizeof(text) - 1);
+  const std::string_view line = std::string_view(text).substr(0, std::string_view(text).find('\n'));
+  std::string result(trimmed(line));
+  std::replace_if(result.begin(), result.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
+  return result;
+}
+
+/// The folder of the USB device that the node hangs on.
+std::optional<fs::path> usb_device_folder(const std::string& name, const V4l2Folders& folders) {
+  std::error_code error;
+  fs::path folder = fs::canonical(fs::path(folders.sys) / "class/video4linux" / name / "device", error);
+  if (error) return std::nullopt;
+  for (int level = 0; level < kMaxLevels && folder.has_relative_path(); ++level, folder = folder.parent_path()) {
+    if (fs::exists(folder / "busnum", error) && fs::exists(folder / "devnum", error)) return folder;
+  }
+  return std::nullopt;
+}
+
+std::string usb_node_of(const fs::path& device, const V4l2Folders& folders) {
+  const std::optional<std::int64_t> bus = parse_int(first_line(device / "busnum")), number = parse_int(first_line(device / "devnum"));
+  if (!bus || !number || *bus < 0 || *bus > 999 || *number < 0 || *number > 999) return "";
+  char name[16];
+  std::snprintf(name, sizeof(name), "%03d/%03d", static_cast<int>(*bus), static_cast<int>(*number));
+  return folders.dev + "/bus/usb/" + name;
+}
+
+std::string by_id_link(const std::string& path, const V4l2Folders& folders) {
+  std::error_code error;
+  for (fs::directory_iterator entry(folders.dev + "/v4l/by-id", error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code broken;
+    const fs::path target = fs::weakly_canonical(entry->path(), broken);
+    if (!broken && target.filename() == fs::path(path).filename()) return entry->path().string();
+  }
+  return "";
+}
+
+/// N of "videoN".
+std::optional<std::int64_t> node_number(const std::string& name) {
+  return name.starts_with("video") ? parse_int(std::string_view(name).substr(5)) : std::nullopt;
+}
+
+std::vector<std::string> node_names(const V4l2Folders& folders) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator entry(folders.sys + "/class/video4linux", error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (node_number(name) && names.size() < kMaxNodes) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) { return *node_number(a) < *node_number(b); });
+  return names;
+}
+
+/// How well a node fits: 0 not at all.
+int fitness(const V4l2DeviceInfo& node, V4l2Role role) {
+  int best = 0;
+  for (const V4l2FormatOffer& offer : node.formats) {
+    const V4l2PixelFormat* format = find_v4l2_pixel_format(offer.fourcc);
+    if (format == nullptr) continue;
+    if (role == V4l2Role::kImage && format->can_be_image) best = std::max(best, format->has_color ? 2 : 1);
+    if (role == V4l2Role::kDepth && format->can_be_depth) best = std::max(best, format->can_be_image ? 1 : 2);
+  }
+  return best;
+}
+
+}  // namespace
+
+V4l2DeviceInfo describe_v4l2_node(const std::string& path, const V4l2Folders& folders) {
+  std::error_code error;
+  const fs::path real = fs::weakly_canonical(path, error);
+  V4l2DeviceInfo info;
+  info.path = error || real.empty() ? path : real.string();
+  const std::string name = fs::path(info.path).filename().string();
+  info.name = first_line(fs::path(folders.sys) / "class/video4linux" / name / "name");
+  info.by_id = by_id_link(info.path, folders);
+  if (const std::optional<fs::path> device = usb_device_folder(name, folders)) {
+    info.serial = first_line(*device / "serial");
+    info.usb_node = usb_node_of(*device, folders);
+  }
+  return info;
+}
+
+std::vector<V4l2DeviceInfo> list_v4l2_devices(V4l2Io& io, const V4l2Folders& folders) {
+  std::vector<V4l2DeviceInfo> nodes;
+  for (const std::string& name : node_names(folders)) {
+    V4l2DeviceInfo info = describe_v4l2_node(folders.dev + "/" + name, folders);
+    const Result<V4l2Device> device = V4l2Device::open(io, info.path);
+    if (!device && device.status().code() == ErrorCode::kUnsupported) continue;
+    if (device) {
+      info.name = device->card();
+      info.driver = device->driver();
+      info.bus = device->bus();
+      info.formats = device->offers();
+    } else {
+      info.problem = device.status().message();
+    }
+    nodes.push_back(std::move(info));
+  }
+  return nodes;
+}
+
+std::vector<V4l2DeviceInfo> list_v4l2_devices() { return list_v4l2_devices(*make_system_v4l2_io(), {}); }
+
+Result<std::string> find_v4l2_node(V4l2Io& io, const V4l2Folders& folders, const std::string& serial, V4l2Role role) {
+  const V4l2DeviceInfo* best = nullptr;
+  int best_fitness = 0;
+  std::string others;
+  bool is_there = false;
+  const std::vector<V4l2DeviceInfo> nodes = list_v4l2_devices(io, folders);
+  for (const V4l2DeviceInfo& node : nodes) {
+    if (node.serial != serial) {
+      if (!node.serial.empty() && others.find(node.serial) == std::string::npos) others += (others.empty() ? "" : ", ") + node.serial;
+      continue;
+    }
+    if (!node.problem.empty()) return Status(ErrorCode::kUnavailable, node.problem);
+    is_there = true;
+    if (const int fits = fitness(node, role); fits > best_fitness) best = &node, best_fitness = fits;
+  }
+  if (best != nullptr) return best->path;
+  if (is_there) {
+    return Status(ErrorCode::kUnsupported, "the camera with serial " + in_quotes(serial) + " offers no " +
+                                               (role == V4l2Role::kDepth ? "depth" : "image") + " format that is read here");
+  }
+  return Status(ErrorCode::kUnavailable, "no camera with serial " + in_quotes(serial) + " is plugged in; there is " +
+                                             (others.empty() ? "none with a serial" : others));
+}
+
+}  // namespace camloc
