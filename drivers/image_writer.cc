@@ -5,6 +5,7 @@
 #include "drivers/image_writer.h"
 
 #include <png.h>
+#include <zlib.h>
 
 #include <bit>
 #include <cassert>
@@ -53,7 +54,22 @@ void on_png_flush(png_structp) {}
 struct PngLayout {
   int width, height, bit_depth, color_type;
   std::size_t row_bytes;
+  PngCompression compression;
 };
+
+void set_compression(png_structp png, const PngLayout& layout) {
+  const bool is_depth = layout.bit_depth == 16;
+  if (layout.compression == PngCompression::kFast || (layout.compression == PngCompression::kSmall && !is_depth)) {
+    png_set_compression_level(png, 1);
+    png_set_compression_strategy(png, Z_RLE);
+    png_set_filter(png, 0, PNG_FILTER_PAETH);
+    return;
+  }
+  const bool is_small = layout.compression == PngCompression::kSmall;
+  png_set_compression_level(png, is_small ? 6 : is_depth ? 1 : 3);  // level 9 is 5 % smaller and ten times slower
+  // Noise in the low byte of depth defeats every filter; choosing one a row cost 15 of 23 ms a frame.
+  if (is_depth) png_set_filter(png, 0, PNG_FILTER_NONE);
+}
 
 /// Teardown of the encoder on every way out.
 struct PngEncoder {
@@ -74,9 +90,7 @@ struct PngEncoder {
     info = png_create_info_struct(png);
     if (info == nullptr) return false;
     png_set_write_fn(png, &sink, on_png_write, on_png_flush);
-    png_set_compression_level(png, layout.bit_depth == 16 ? 1 : 3);  // level 9 is 5 % smaller and ten times slower
-    // Noise in the low byte of depth defeats every filter; choosing one a row cost 15 of 23 ms a frame.
-    if (layout.bit_depth == 16) png_set_filter(png, 0, PNG_FILTER_NONE);
+    set_compression(png, layout);
     png_set_IHDR(png, info, static_cast<png_uint_32>(layout.width), static_cast<png_uint_32>(layout.height), layout.bit_depth, layout.color_type,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_write_info(png, info);
@@ -146,23 +160,25 @@ struct JpegEncoder {
 
 }  // namespace
 
-Status write_png(const std::string& path, const std::uint8_t* pixels, int width, int height, int channels) {
+Status write_png(const std::string& path, const std::uint8_t* pixels, int width, int height, int channels, PngCompression compression) {
   assert(channels == 1 || channels == 3);
   const int color_type = channels == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY;
-  return write_png_layout(path, pixels, {width, height, 8, color_type, static_cast<std::size_t>(width) * static_cast<std::size_t>(channels)});
+  return write_png_layout(path, pixels,
+                          {width, height, 8, color_type, static_cast<std::size_t>(width) * static_cast<std::size_t>(channels), compression});
 }
 
-Status write_png(const std::string& path, const Image<std::uint8_t>& gray) {
-  return write_png(path, gray.pixels.data(), gray.width, gray.height, 1);
+Status write_png(const std::string& path, const Image<std::uint8_t>& gray, PngCompression compression) {
+  return write_png(path, gray.pixels.data(), gray.width, gray.height, 1, compression);
 }
 
 Status write_png(const std::string& path, const ColorImage& color) {
   return write_png(path, color.pixels.data(), color.width, color.height, 3);
 }
 
-Status write_depth_png(const std::string& path, const Image<std::uint16_t>& depth) {
+Status write_depth_png(const std::string& path, const Image<std::uint16_t>& depth, PngCompression compression) {
   const auto* pixels = reinterpret_cast<const std::uint8_t*>(depth.pixels.data());
-  return write_png_layout(path, pixels, {depth.width, depth.height, 16, PNG_COLOR_TYPE_GRAY, static_cast<std::size_t>(depth.width) * 2});
+  return write_png_layout(path, pixels,
+                          {depth.width, depth.height, 16, PNG_COLOR_TYPE_GRAY, static_cast<std::size_t>(depth.width) * 2, compression});
 }
 
 Status write_jpeg(const std::string& path, const std::uint8_t* pixels, int width, int height, int channels, int quality) {

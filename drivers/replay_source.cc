@@ -22,6 +22,7 @@ namespace {
 struct ReplayOptions {
   double speed = 0;  ///< times the recorded rate; 0 = as fast as possible
   bool loop = false;
+  bool wants_color = false;
 };
 
 /// Frames of a recording that were chosen, and what the whole recording measures.
@@ -63,6 +64,7 @@ class ReplaySource final : public FrameSource {
     loaded_.stamp_ns = source.stamp_ns + static_cast<std::int64_t>(round_) * recording_.length_ns;
     Status status = reader_.read_gray(source.color_path, &loaded_.gray);
     if (status) status = check_size(source.color_path, loaded_.gray.width, loaded_.gray.height, info_.color_width, info_.color_height);
+    if (status && options_.wants_color) status = load_color(source.color_path);
     if (source.depth_path.empty()) {
       loaded_.depth.resize(0, 0);
     } else {
@@ -75,6 +77,18 @@ class ReplaySource final : public FrameSource {
       return {ErrorCode::kUnavailable, recording_.folder + ": the folder is gone"};
     }
     return {ErrorCode::kCorrupt, "frame " + std::to_string(source.index) + ": " + status.message()};
+  }
+
+  Status load_color(const std::string& path) {
+    const Result<ColorImage> image = reader_.read_color(path);
+    if (!image) return image.status();
+    loaded_.color.resize(image->width, image->height);
+    const std::uint8_t* rgb = image->pixels.data();
+    for (Bgr& pixel : loaded_.color.pixels) {
+      pixel = {rgb[2], rgb[1], rgb[0]};
+      rgb += 3;
+    }
+    return Status::ok();
   }
 
   static Status check_size(const std::string& path, int width, int height, int expected_width, int expected_height) {
@@ -152,7 +166,7 @@ Result<FrameSourceInfo> describe(const Recording& recording) {
 
 }  // namespace
 
-Result<std::unique_ptr<FrameSource>> open_replay_source(const SourceUrl& url, const FrameSourceOptions& /*options*/) {
+Result<std::unique_ptr<FrameSource>> open_replay_source(const SourceUrl& url, const FrameSourceOptions& options) {
   if (Status status = url.check_options({"speed", "loop", "frames", "exclude", "rate_hz"}); !status) return status;
   if (url.path.empty()) return Status(ErrorCode::kInvalid, url.text + ": no folder; expected replay://DIR");
   const Result<double> speed = url.number_option("speed", 0, 0, 1000);
@@ -166,7 +180,7 @@ Result<std::unique_ptr<FrameSource>> open_replay_source(const SourceUrl& url, co
   Result<FrameSourceInfo> info = describe(*recording);
   if (!info) return info.status();
   return std::unique_ptr<FrameSource>(
-      std::make_unique<ReplaySource>(std::move(recording).value(), ReplayOptions{*speed, loop == "1"}, std::move(info).value()));
+      std::make_unique<ReplaySource>(std::move(recording).value(), ReplayOptions{*speed, loop == "1", options.wants_color}, std::move(info).value()));
 }
 
 }  // namespace camloc

@@ -22,6 +22,20 @@ TEST(ImageWriter, PngKeepsGrayAndColor) {
   EXPECT_EQ(read.pixels, gray.pixels);
 }
 
+TEST(ImageWriter, NoCompressionChangesAPixel) {
+  const TestFolder folder;
+  const ColorImage color = smooth_color(61, 47, 3);
+  const Image<std::uint16_t> depth = ramp_depth(61, 47, 9);
+  for (const PngCompression compression : {PngCompression::kPicture, PngCompression::kFast, PngCompression::kSmall}) {
+    ASSERT_TRUE(write_png(folder / "c.png", color.pixels.data(), color.width, color.height, 3, compression).is_ok());
+    EXPECT_EQ(ImageReader().read_color(folder / "c.png")->pixels, color.pixels);
+    ASSERT_TRUE(write_depth_png(folder / "d.png", depth, compression).is_ok());
+    Image<std::uint16_t> read;
+    ASSERT_TRUE(ImageReader().read_depth(folder / "d.png", &read).is_ok());
+    EXPECT_EQ(read.pixels, depth.pixels);
+  }
+}
+
 TEST(ImageWriter, LowerQualityIsSmaller) {
   const TestFolder folder;
   ASSERT_TRUE(write_jpeg(folder / "good.jpg", smooth_color(200, 200), 98).is_ok());

@@ -154,6 +154,22 @@ TEST(ReplaySource, CameraFileOfTheRecording) {
   EXPECT_NE(open_frame_source(folder.path()).status().message().find("camera.toml:1"), std::string::npos);
 }
 
+TEST(ReplaySource, ColorWhereItIsWanted) {
+  const TestFolder folder;
+  ColorImage red{std::vector<std::uint8_t>(3 * 16 * 12, 0), 16, 12};
+  for (std::size_t i = 0; i < red.pixels.size(); i += 3) red.pixels[i] = 200;
+  ASSERT_TRUE(write_png(folder / "frame-000000.color.png", red));
+  for (const bool wants_color : {false, true}) {
+    auto source = open_frame_source(folder.path(), {wants_color});
+    ASSERT_TRUE(source.is_ok()) << source.status().message();
+    FrameBuffer frame;
+    ASSERT_TRUE((*source)->next(&frame, milliseconds(0)).is_ok());
+    ASSERT_EQ(frame.color.pixels.size(), wants_color ? 16U * 12U : 0U);
+    if (wants_color) EXPECT_EQ(frame.color.at(15, 11).r, 200);
+    if (wants_color) EXPECT_EQ(frame.color.at(15, 11).b, 0);
+  }
+}
+
 TEST(ReplaySource, BadUrls) {
   const TestFolder folder;
   write_7scenes(folder, 2);

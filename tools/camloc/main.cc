@@ -26,6 +26,7 @@ constexpr std::array kCommands{
     Command{"localize", camloc::tools::add_localize_command},
     Command{"eval", camloc::tools::add_eval_command},
     Command{"map", camloc::tools::add_map_command},
+    Command{"record", camloc::tools::add_record_command},
     Command{"monitor", camloc::tools::add_monitor_command},
     Command{"ctl", camloc::tools::add_ctl_command},
     Command{"doctor", camloc::tools::add_doctor_command},
