@@ -4,6 +4,8 @@
 // The table of frame sources. A new device adds its line here and nothing else.
 #include "drivers/frame_source.h"
 
+#include "drivers/openni2/oni_source.h"
+#include "drivers/openni2/openni2_source.h"
 #include "drivers/replay_source.h"
 #include "drivers/sample_source.h"
 #include "drivers/source_url.h"
@@ -21,6 +23,9 @@ struct Scheme {
 constexpr Scheme kSchemes[] = {
     {"replay", open_replay_source,
      "replay://DIR?speed=1&loop=0&frames=0:100:2&exclude=::50&rate_hz=30  a recorded TUM RGB-D or 7-Scenes folder; speed=0 (default) is as fast as possible"},
+    {"openni2", open_openni2_source,
+     "openni2://URI_SERIAL_OR_INDEX?width=640&height=480&rate_hz=30  a depth camera with an OpenNI2 driver; openni2:// is the first one"},
+    {"oni", open_oni_source, "oni://FILE?speed=1&loop=0&frames=0:100:2&exclude=::50&registered=1  a recording of OpenNI or OpenNI2"},
     {"sample", open_sample_source, "sample://?rate_hz=30&frames=300&width=640&height=480  generated images of a room, for trying things without a camera"},
 };
 

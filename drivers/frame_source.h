@@ -68,6 +68,8 @@ class FrameSource {
 /// `scheme://rest?key=value&...`; a bare path means replay://path.
 ///   replay://DIR   TUM RGB-D or 7-Scenes folder; speed=1 (0 = as fast as possible, the default), loop=0|1,
 ///                  frames=start:stop:step[,...] (Python slice rules), rate_hz= for folders without stamps (30)
+///   openni2://DEV  a camera with an OpenNI2 driver, by URI, serial number or index, or the first; width=, height=, rate_hz=
+///   oni://FILE     a recording of OpenNI or OpenNI2; speed=, loop=, frames=, exclude=, registered=1
 ///   sample://      generated images; rate_hz=, frames=, width=, height=
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_frame_source(const std::string& url, const FrameSourceOptions& options = {});
 

@@ -1,0 +1,212 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// See openni2_source.h. The library's threads fill its own buffers; this one waits, in short slices so that a device that
+// went away is noticed, converts what came at once and keeps the newest image and depth until they make a pair.
+#include "drivers/openni2/openni2_source.h"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+#include "drivers/device_clock.h"
+#include "drivers/openni2/openni2_device.h"
+
+namespace camloc {
+
+namespace {
+
+using openni2::Device;
+using openni2::RawImage;
+using openni2::Stream;
+
+constexpr std::chrono::milliseconds kWaitSlice(20);
+
+std::int64_t monotonic_ns() {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+/// The newest frame of a stream, until it is paired.
+struct Arrival {
+  bool is_fresh = false;
+  std::int64_t device_ns = 0;
+  std::int64_t arrival_ns = 0;
+  std::int64_t stamp_ns = 0;
+};
+
+class Openni2Source final : public FrameSource {
+ public:
+  Openni2Source(std::unique_ptr<Device> device, FrameSourceInfo info, bool wants_color)
+      : device_(std::move(device)), info_(std::move(info)), wants_color_(wants_color), max_pair_gap_ns_(600'000'000 / device_->image().mode.fps) {}
+
+  [[nodiscard]] const FrameSourceInfo& info() const override { return info_; }
+
+  [[nodiscard]] Status next(FrameBuffer* frame, std::chrono::milliseconds timeout) override {
+    const auto deadline = std::chrono::steady_clock::now() + timeout;
+    // More frames than any wait brings; a driver gone mad must not keep us here.
+    for (int num_reads = 0; num_reads < 1000; ++num_reads) {
+      if (device_->is_gone()) return {ErrorCode::kUnavailable, "OpenNI2 device " + device_->uri() + ": is gone"};
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+      Result<bool> has_read = read_one(std::clamp(left, std::chrono::milliseconds(0), kWaitSlice));
+      if (!has_read) return has_read.status();
+      if (*has_read && take_pair(frame)) return Status::ok();
+      if (left <= std::chrono::milliseconds(0)) break;
+    }
+    return {ErrorCode::kTimeout, "no frame from OpenNI2 device " + device_->uri()};
+  }
+
+  [[nodiscard]] FrameSourceHealth health() const override {
+    FrameSourceHealth health;
+    health.frames_incomplete = num_incomplete_;
+    health.frames_unpaired = num_unpaired_;
+    health.clock_drift_ppm = image_clock_.drift_ppm();
+    return health;
+  }
+
+  [[nodiscard]] Status restart() override {
+    if (device_->is_gone()) return {ErrorCode::kUnavailable, "OpenNI2 device " + device_->uri() + ": is gone"};
+    device_->stop();
+    // It said it would deliver both in step, and delivered nothing.
+    if (!has_delivered_) device_->disable_sync();
+    image_ = depth_ = Arrival();
+    image_clock_.reset();
+    depth_clock_.reset();
+    has_compared_clocks_ = false;
+    has_delivered_ = false;
+    Status status = device_->start();
+    info_.description = device_->description();
+    return status;
+  }
+
+ private:
+  /// Waits for one frame of any stream and keeps it. False: none came.
+  Result<bool> read_one(std::chrono::milliseconds timeout) {
+    const openni2::Api& api = device_->session().api();
+    OniStreamHandle streams[2] = {device_->image().handle, device_->depth().handle};
+    int index = -1;
+    const OniStatus waited = api.wait_for_any_stream(streams, device_->has_depth() ? 2 : 1, &index, static_cast<int>(timeout.count()));
+    if (waited == ONI_STATUS_TIME_OUT) return false;
+    if (waited != ONI_STATUS_OK || index < 0 || index > 1) return library_error("waiting for a frame failed");
+    OniFrame* raw = nullptr;
+    if (api.stream_read_frame(streams[index], &raw) != ONI_STATUS_OK || raw == nullptr) return library_error("reading a frame failed");
+    const Status status = keep(*raw, index == 0 ? device_->image() : device_->depth(), index == 0 ? &image_ : &depth_);
+    api.frame_release(raw);
+    if (status) return true;
+    ++num_incomplete_;
+    return status;
+  }
+
+  [[nodiscard]] Status library_error(const std::string& what) const {
+    return {ErrorCode::kUnavailable, "OpenNI2 device " + device_->uri() + ": " + what + " (" + device_->session().last_error() + ")"};
+  }
+
+  Status keep(const OniFrame& raw, const Stream& stream, Arrival* arrival) {
+    constexpr std::uint64_t kMaxStampUs = 4'000'000'000'000'000;
+    const bool is_image = arrival == &image_;
+    if (is_image) ++sequence_;
+    if (arrival->is_fresh) ++num_unpaired_;
+    arrival->is_fresh = false;
+    const auto bad = [&](const std::string& why) { return Status(ErrorCode::kCorrupt, std::string(is_image ? "image" : "depth") + " frame " + std::to_string(raw.frameIndex) + ": " + why); };
+    if (raw.data == nullptr || raw.dataSize <= 0 || raw.stride <= 0) return bad("empty");
+    if (raw.width != stream.mode.width || raw.height != stream.mode.height || raw.croppingEnabled != FALSE || raw.videoMode.pixelFormat != stream.mode.oni_pixel_format) {
+      return bad(std::to_string(raw.width) + "x" + std::to_string(raw.height) + " in format " + std::to_string(raw.videoMode.pixelFormat) + " instead of " + describe(stream.mode));
+    }
+    if (raw.timestamp > kMaxStampUs) return bad("stamp out of range");
+    const std::int64_t device_ns = static_cast<std::int64_t>(raw.timestamp) * 1000;
+    const std::int64_t arrival_ns = monotonic_ns();
+    const RawImage pixels{{static_cast<const std::uint8_t*>(raw.data), static_cast<std::size_t>(raw.dataSize)}, raw.width, raw.height,
+                          static_cast<std::size_t>(raw.stride), stream.pixels.layout, stream.is_mirrored};
+    Status status = is_image ? to_gray(pixels, &kept_.gray) : to_depth(pixels, &kept_.depth);
+    if (status && is_image && wants_color_) status = to_bgr(pixels, &kept_.color);
+    if (!status) return bad(status.message());
+    *arrival = {true, device_ns, arrival_ns, (is_image ? image_clock_ : depth_clock_).to_monotonic(device_ns, arrival_ns)};
+    return Status::ok();
+  }
+
+  /// Gives the kept image away with its depth, if they are there and of one time.
+  bool take_pair(FrameBuffer* frame) {
+    if (!image_.is_fresh || (device_->has_depth() && !depth_.is_fresh)) return false;
+    if (device_->has_depth() && !is_pair()) return false;
+    kept_.sequence = sequence_;
+    kept_.stamp_ns = image_.stamp_ns;
+    image_.is_fresh = depth_.is_fresh = false;
+    has_delivered_ = true;
+    std::swap(*frame, kept_);
+    if (!device_->has_depth()) frame->depth.resize(0, 0);
+    if (!wants_color_) frame->color.resize(0, 0);
+    return true;
+  }
+
+  /// Drops the older of the two where they are too far apart.
+  bool is_pair() {
+    if (!has_compared_clocks_) compare_clocks();
+    const std::int64_t gap_ns = has_shared_clock_ ? image_.device_ns - depth_.device_ns : image_.stamp_ns - depth_.stamp_ns;
+    if (std::llabs(gap_ns) <= max_pair_gap_ns_) return true;
+    (gap_ns < 0 ? image_ : depth_).is_fresh = false;
+    ++num_unpaired_;
+    return false;
+  }
+
+  /// Most devices stamp both streams with one clock; some count each from its own start.
+  void compare_clocks() {
+    constexpr std::int64_t kSameClockNs = 500'000'000;
+    has_compared_clocks_ = true;
+    has_shared_clock_ = std::llabs((image_.device_ns - depth_.device_ns) - (image_.arrival_ns - depth_.arrival_ns)) < kSameClockNs;
+  }
+
+  std::unique_ptr<Device> device_;
+  FrameSourceInfo info_;
+  bool wants_color_;
+  std::int64_t max_pair_gap_ns_;
+  FrameBuffer kept_;
+  Arrival image_, depth_;
+  DeviceClock image_clock_, depth_clock_;
+  bool has_compared_clocks_ = false;
+  bool has_shared_clock_ = true;
+  bool has_delivered_ = false;
+  std::uint64_t sequence_ = 0;
+  std::uint64_t num_incomplete_ = 0;
+  std::uint64_t num_unpaired_ = 0;
+};
+
+Result<openni2::ModeRequest> mode_request(const SourceUrl& url) {
+  const Result<double> width = url.number_option("width", 0, 1, 16384);
+  if (!width) return width.status();
+  const Result<double> height = url.number_option("height", 0, 1, 16384);
+  if (!height) return height.status();
+  const Result<double> rate_hz = url.number_option("rate_hz", 0, 1, 1000);
+  if (!rate_hz) return rate_hz.status();
+  return openni2::ModeRequest{static_cast<int>(*width), static_cast<int>(*height), static_cast<int>(*rate_hz)};
+}
+
+FrameSourceInfo describe(const Device& device) {
+  FrameSourceInfo info;
+  info.description = device.description();
+  info.serial = device.serial();
+  info.color_width = device.image().mode.width;
+  info.color_height = device.image().mode.height;
+  info.depth_width = device.depth().mode.width;
+  info.depth_height = device.depth().mode.height;
+  info.camera = device.camera();
+  info.stamp_clock = StampClock::kMonotonic;
+  return info;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<FrameSource>> open_openni2_source(const SourceUrl& url, const FrameSourceOptions& options) {
+  if (Status status = url.check_options({"width", "height", "rate_hz"}); !status) return status;
+  const Result<openni2::ModeRequest> request = mode_request(url);
+  if (!request) return request.status();
+  Result<std::unique_ptr<Device>> device = Device::open(url.path, *request);
+  if (!device) return device.status();
+  if (Status status = (*device)->start(); !status) return status;
+  FrameSourceInfo info = describe(**device);
+  return std::unique_ptr<FrameSource>(std::make_unique<Openni2Source>(std::move(device).value(), std::move(info), options.wants_color));
+}
+
+}  // namespace camloc

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Pixels as OpenNI2 devices and recordings deliver them, to grey, BGR and raw depth. Pure functions over bytes that are not
+// trusted: a size that does not fit is an error, never a read beyond the end.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/base/frame.h"
+#include "core/base/result.h"
+
+namespace camloc::openni2 {
+
+enum class PixelLayout : std::uint8_t {
+  kGray8,    ///< one byte
+  kGray16,   ///< infrared, 10 bits in 16; little endian as all that follows
+  kRgb24,    ///< red, green, blue
+  kUyvy,     ///< U Y0 V Y1 for two pixels, BT.601 of limited range; what OpenNI2 calls YUV422
+  kYuyv,     ///< Y0 U Y1 V
+  kDepth16,  ///< distance in units that the pixel format names
+  kJpeg,     ///< compressed; of recordings only
+};
+
+/// An OniPixelFormat: its layout and, for depth, the unit.
+struct PixelFormat {
+  PixelLayout layout = PixelLayout::kGray8;
+  double depth_unit_m = 0;  ///< 0 for what is no depth
+};
+
+/// Empty for formats that are not read: raw shifts (SHIFT_9_2, SHIFT_9_3), which need the device's own table.
+[[nodiscard]] std::optional<PixelFormat> pixel_format_of(int oni_pixel_format);
+[[nodiscard]] const char* name_of(PixelLayout layout);
+/// 0 for kJpeg.
+[[nodiscard]] std::size_t bytes_per_pixel(PixelLayout layout);
+
+/// One image in memory of somebody else.
+struct RawImage {
+  std::span<const std::uint8_t> bytes;
+  int width = 0;
+  int height = 0;
+  std::size_t stride_bytes = 0;  ///< from row to row
+  PixelLayout layout = PixelLayout::kGray8;
+  bool is_mirrored = false;      ///< left and right are exchanged; the conversions undo it
+};
+
+/// kCorrupt where the bytes cannot hold the image. Every conversion below checks it first.
+[[nodiscard]] Status check_raw_image(const RawImage& image);
+/// BT.601 luma; infrared is cut to its 8 most significant of 10 bits. Not for kJpeg and kDepth16: kUnsupported.
+[[nodiscard]] Status to_gray(const RawImage& image, Image<std::uint8_t>* gray);
+[[nodiscard]] Status to_bgr(const RawImage& image, Image<Bgr>* color);
+/// kDepth16 alone.
+[[nodiscard]] Status to_depth(const RawImage& image, Image<std::uint16_t>* depth);
+
+}  // namespace camloc::openni2
