@@ -4,6 +4,7 @@
 // The table of frame sources. A new device adds its line here and nothing else.
 #include "drivers/frame_source.h"
 
+#include "drivers/kinect/kinect_source.h"
 #include "drivers/openni2/oni_source.h"
 #include "drivers/openni2/openni2_source.h"
 #include "drivers/replay_source.h"
@@ -21,6 +22,9 @@ struct Scheme {
 };
 
 constexpr Scheme kSchemes[] = {
+    {"kinect", open_kinect_source,
+     "kinect://[SERIAL|INDEX]?depth=registered|raw|off&exposure_us=8000&led=status&tilt_deg=0  a Kinect V1 on USB; more: auto_exposure=0|1, "
+     "gain=1..16, white_balance=auto|manual"},
     {"replay", open_replay_source,
      "replay://DIR?speed=1&loop=0&frames=0:100:2&exclude=::50&rate_hz=30  a recorded TUM RGB-D or 7-Scenes folder; speed=0 (default) is as fast as possible"},
     {"openni2", open_openni2_source,

@@ -71,6 +71,7 @@ class FrameSource {
 ///   openni2://DEV  a camera with an OpenNI2 driver, by URI, serial number or index, or the first; width=, height=, rate_hz=
 ///   oni://FILE     a recording of OpenNI or OpenNI2; speed=, loop=, frames=, exclude=, registered=1
 ///   sample://      generated images; rate_hz=, frames=, width=, height=
+///   kinect://[SERIAL|INDEX]   Kinect V1; depth=registered|raw|off, exposure_us=, gain=, led=, tilt_deg=, ... (kinect_options.h)
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_frame_source(const std::string& url, const FrameSourceOptions& options = {});
 
 /// Schemes this build knows, with a line of help each.

@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// See kinect_control.h.
+#include "drivers/kinect/kinect_control.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+namespace camloc::kinect {
+
+namespace {
+
+constexpr std::uint16_t kManual = 1, kAutomatic = 2;  // of kControlExposureMode
+constexpr std::uint16_t kResolution640 = 1;
+
+std::string hexadecimal(std::uint16_t value) {
+  char text[8];
+  std::snprintf(text, sizeof(text), "0x%02x", value);
+  return text;
+}
+
+struct RegisterValue {
+  Register address;
+  std::uint16_t value;
+};
+
+}  // namespace
+
+Result<std::span<const std::uint8_t>> KinectControl::command(Command command, std::span<const std::uint16_t> body,
+                                                             std::size_t min_body_bytes) {
+  const std::string name = "Kinect command " + hexadecimal(static_cast<std::uint16_t>(command));
+  const ControlRequest request = encode_request(command, ++tag_, body);
+  if (Status status = transport_->send({request.bytes.data(), request.size}); !status) return status.with_context(name);
+  for (auto waited = std::chrono::microseconds(0); waited <= kReplyPatience; waited += kPollInterval) {
+    const Result<std::size_t> size = transport_->receive(reply_);
+    if (!size) return size.status().with_context(name);
+    const ControlReply reply = parse_reply({reply_.data(), std::min(*size, reply_.size())}, command, tag_);
+    if (reply.state == ReplyState::kCorrupt) return Status(ErrorCode::kCorrupt, name + ": the device answers nonsense");
+    if (reply.state == ReplyState::kOk) {
+      if (reply.body.size() < std::max<std::size_t>(min_body_bytes, 2)) {
+        return Status(ErrorCode::kCorrupt, name + ": the answer has " + std::to_string(reply.body.size()) + " bytes, expected " +
+                                               std::to_string(min_body_bytes));
+      }
+      return reply.body;
+    }
+    transport_->pause(kPollInterval);
+  }
+  return Status(ErrorCode::kTimeout, name + ": no answer within " + std::to_string(kReplyPatience.count()) + " ms");
+}
+
+Status KinectControl::write_register(Register address, std::uint16_t value) {
+  const std::uint16_t body[] = {static_cast<std::uint16_t>(address), value};
+  const auto reply = command(Command::kWriteRegister, body, 2);
+  if (!reply) return reply.status();
+  if (const std::uint16_t refusal = word_at(*reply, 0); refusal != 0) {
+    return {ErrorCode::kInvalid, "Kinect register " + hexadecimal(body[0]) + " does not take " + std::to_string(value) +
+                                     " (status " + std::to_string(refusal) + ")"};
+  }
+  return Status::ok();
+}
+
+Status KinectControl::start_color() {
+  for (const auto& [address, value] : {RegisterValue{Register::kColorStream, 0},
+                                       {Register::kColorFormat, 0},
+                                       {Register::kColorResolution, kResolution640},
+                                       {Register::kColorRate, kFrameRateHz},
+                                       {Register::kColorStream, 1},
+                                       {Register::kColorMirror, 0}}) {
+    if (Status status = write_register(address, value); !status) return status;
+  }
+  return Status::ok();
+}
+
+Status KinectControl::start_depth() {
+  for (const auto& [address, value] : {RegisterValue{Register::kProjectorCycle, 0},
+                                       {Register::kDepthStream, 0},
+                                       {Register::kDepthFormat, 3},
+                                       {Register::kDepthResolution, kResolution640},
+                                       {Register::kDepthRate, kFrameRateHz},
+                                       {Register::kDepthStream, 2},
+                                       {Register::kDepthMirror, 0}}) {
+    if (Status status = write_register(address, value); !status) return status;
+  }
+  return Status::ok();
+}
+
+Result<std::span<const std::uint8_t>> KinectControl::algorithm_parameter(AlgorithmParameter parameter, std::size_t bytes) {
+  const std::uint16_t body[] = {static_cast<std::uint16_t>(parameter), 0, kResolution640, kFrameRateHz, 0};
+  return command(Command::kAlgorithm, body, bytes);
+}
+
+KinectCalibration KinectControl::read_calibration() {
+  KinectCalibration calibration;
+  if (const auto body = algorithm_parameter(AlgorithmParameter::kRegistration, kRegistrationBodyBytes))
+    calibration.registration = parse_registration(*body);
+  if (const auto body = algorithm_parameter(AlgorithmParameter::kRegistrationPadding, kPaddingBodyBytes)) {
+    calibration.padding_start_lines = parse_padding(*body).value_or(0);
+  }
+  if (const auto body = algorithm_parameter(AlgorithmParameter::kConstShift, kConstShiftBodyBytes))
+    calibration.const_shift = parse_const_shift(*body);
+  constexpr std::uint16_t kFromStart[5] = {};
+  if (const auto body = command(Command::kFixedParameters, kFromStart, kZeroPlaneOffset + 16))
+    calibration.zero_plane = parse_zero_plane(*body);
+  return calibration;
+}
+
+// ---- colour sensor of model 1414
+
+Result<std::uint16_t> KinectControl::read_sensor(std::uint16_t address) {
+  const std::uint16_t body[] = {1, address, 0};
+  const auto reply = command(Command::kSensorRegister, body, 6);
+  if (!reply) return reply.status();
+  return word_at(*reply, 4);
+}
+
+Status KinectControl::write_sensor(std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
+  const std::uint16_t body[] = {1, static_cast<std::uint16_t>(address | 0x8000U), value};
+  if (const auto reply = command(Command::kSensorRegister, body, 2); !reply) return reply.status();
+  const Result<std::uint16_t> now = read_sensor(address);
+  if (!now) return now.status();
+  if (((*now ^ value) & mask) != 0)
+    return {ErrorCode::kUnsupported, "the colour sensor of this Kinect ignores register " + hexadecimal(address)};
+  return Status::ok();
+}
+
+Status KinectControl::set_sensor_mode(std::uint16_t bit, bool is_on) {
+  const Result<std::uint16_t> mode = read_sensor(kSensorMode);
+  if (!mode) return mode.status();
+  return write_sensor(kSensorMode, static_cast<std::uint16_t>(is_on ? *mode | bit : *mode & ~bit), bit);
+}
+
+Status KinectControl::set_color_1414(const ColorControls& controls) {
+  if (controls.gain) return {ErrorCode::kUnsupported, "gain cannot be set on Kinect model 1414"};
+  const bool is_manual = controls.exposure_us.has_value();
+  if (is_manual || controls.auto_exposure) {
+    if (Status status = set_sensor_mode(kSensorModeAutoExposure, !is_manual && *controls.auto_exposure); !status) return status;
+  }
+  if (is_manual) {
+    const double rows = std::clamp(std::round(*controls.exposure_us / kSensorRowUs), 1.0, 65535.0);
+    if (Status status = write_sensor(kSensorShutterRows, static_cast<std::uint16_t>(rows), 0xffff); !status) return status;
+  }
+  return controls.auto_white_balance ? set_sensor_mode(kSensorModeAutoWhiteBalance, *controls.auto_white_balance) : Status::ok();
+}
+
+// ---- colour sensor of model 1473 and K4W
+
+Status KinectControl::write_control_word(std::uint16_t control, std::uint16_t value) {
+  const std::uint16_t write[] = {1, control, value}, read[] = {1, kControlReadWord, control};
+  if (const auto reply = command(Command::kCameraControl, write, 2); !reply) return reply.status();
+  const auto reply = command(Command::kCameraControl, read, 8);
+  if (!reply) return reply.status();
+  if (word_at(*reply, 6) != value) return {ErrorCode::kUnsupported, "this Kinect ignores colour control " + hexadecimal(control)};
+  return Status::ok();
+}
+
+Status KinectControl::set_exposure_mode(bool is_automatic) {
+  const std::uint16_t mode = is_automatic ? kAutomatic : kManual;
+  const std::uint16_t write[] = {2, kControlWriteByte, kControlExposureMode, kControlByteValue, mode};
+  const std::uint16_t read[] = {1, kControlReadByte, kControlExposureMode};
+  if (const auto reply = command(Command::kCameraControl, write, 2); !reply) return reply.status();
+  const auto reply = command(Command::kCameraControl, read, 8);
+  if (!reply) return reply.status();
+  if (word_at(*reply, 6) != mode) return {ErrorCode::kUnsupported, "this Kinect does not change its exposure mode"};
+  return Status::ok();
+}
+
+Status KinectControl::set_color_1473(const ColorControls& controls) {
+  if (controls.auto_white_balance) return {ErrorCode::kUnsupported, "white balance can be set on Kinect model 1414 only"};
+  const bool is_manual = controls.exposure_us || controls.gain;
+  if (is_manual || controls.auto_exposure) {
+    if (Status status = set_exposure_mode(!is_manual && *controls.auto_exposure); !status) return status;
+  }
+  if (controls.exposure_us) {
+    const auto hundreds_us = static_cast<std::uint32_t>(std::max(1, *controls.exposure_us / 100));
+    Status status = write_control_word(kControlExposureHigh, static_cast<std::uint16_t>(hundreds_us >> 16));
+    if (status) status = write_control_word(kControlExposureLow, static_cast<std::uint16_t>(hundreds_us & 0xffff));
+    if (!status) return status;
+  }
+  return controls.gain ? write_control_word(kControlGain, static_cast<std::uint16_t>(std::lround(*controls.gain * 32)))
+                       : Status::ok();
+}
+
+Status KinectControl::set_color(const ColorControls& controls, bool is_1414) {
+  return is_1414 ? set_color_1414(controls) : set_color_1473(controls);
+}
+
+}  // namespace camloc::kinect

@@ -1,0 +1,311 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// See kinect_source.h. The way of a frame: IsoStream > KinectReceiver (event thread) > next(): pair, stamp, demosaic, register.
+#include "drivers/kinect/kinect_source.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "drivers/bayer.h"
+#include "drivers/kinect/counter_clock.h"
+#include "drivers/kinect/frame_pairing.h"
+#include "drivers/kinect/kinect_device.h"
+#include "drivers/kinect/kinect_motor.h"
+#include "drivers/kinect/kinect_options.h"
+#include "drivers/kinect/kinect_registration.h"
+#include "drivers/packed_pixels.h"
+
+namespace camloc {
+
+namespace kinect {
+
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr auto kHalfPeriodTicks = static_cast<std::int32_t>(kDeviceClockHz / kFrameRateHz / 2);
+constexpr std::size_t kNumPixels = static_cast<std::size_t>(kWidth) * kHeight;
+/// Depth that belongs to a colour image is complete at most a period later; its packets then take their time.
+constexpr milliseconds kDepthPatience{50};
+/// Without packets for this long a stream stands still, and so does the source.
+constexpr milliseconds kSilence{200};
+
+steady_clock::time_point time_of(std::int64_t monotonic_ns) {
+  return steady_clock::time_point(std::chrono::nanoseconds(monotonic_ns));
+}
+
+/// What the device is and how its depth is read; fixed from open to close.
+struct Geometry {
+  KinectCalibration calibration;
+  DepthTable depth_table{};
+  std::optional<DepthRegistration> registration;
+};
+
+class KinectSource final : public FrameSource {
+ public:
+  [[nodiscard]] static Result<std::unique_ptr<FrameSource>> open(const KinectOptions& kinect_options,
+                                                                 const FrameSourceOptions& options) {
+    std::unique_ptr<KinectSource> source(new KinectSource(kinect_options, options));
+    if (Status status = source->connect(); !status) return status;
+    return std::unique_ptr<FrameSource>(std::move(source));
+  }
+  ~KinectSource() override;
+
+  [[nodiscard]] const FrameSourceInfo& info() const override { return info_; }
+  [[nodiscard]] Status next(FrameBuffer* frame, milliseconds timeout) override;
+  [[nodiscard]] FrameSourceHealth health() const override;
+  [[nodiscard]] Status restart() override;
+  [[nodiscard]] Status reset_device() override;
+
+ private:
+  KinectSource(KinectOptions kinect_options, const FrameSourceOptions& options)
+      : kinect_options_(std::move(kinect_options)),
+        wants_color_(options.wants_color),
+        raw_depth_(kNumPixels),
+        clock_(kDeviceClockHz) {}
+  [[nodiscard]] bool has_depth() const { return kinect_options_.depth != DepthMode::kOff; }
+  [[nodiscard]] Status connect();
+  [[nodiscard]] Status set_up_motor();
+  void describe();
+  [[nodiscard]] Status start_streams();
+  void stop_streams();
+  void give_back(Stream stream, RawFrame** frame);
+  [[nodiscard]] bool is_depth_silent(steady_clock::time_point now) const;
+  [[nodiscard]] Pairing pairing(steady_clock::time_point now) const;
+  void deliver(bool with_depth, FrameBuffer* frame);
+  void convert_depth_image(FrameBuffer* frame);
+  void show(Led led);
+  [[nodiscard]] Status stalled(milliseconds timeout);
+
+  KinectOptions kinect_options_;
+  bool wants_color_;
+  FrameSourceInfo info_;
+  Geometry geometry_;
+  std::vector<std::uint16_t> raw_depth_;
+  CounterClock clock_;
+  KinectReceiver receiver_;
+  std::unique_ptr<KinectDevice> device_;
+  std::unique_ptr<KinectControl> control_;
+  std::unique_ptr<KinectMotor> motor_;  // after device_, whose thread handles its events
+  RawFrame* color_ = nullptr;           // taken from the receiver, not yet delivered
+  RawFrame* depth_ = nullptr;
+  std::uint64_t sequence_ = 0, num_unpaired_ = 0;
+  bool is_reset_ = false;
+};
+
+Status KinectSource::connect() {
+  Result<std::unique_ptr<KinectDevice>> device = KinectDevice::open(kinect_options_.selector, &receiver_);
+  if (!device) return device.status();
+  device_ = std::move(device).value();
+  control_ = std::make_unique<KinectControl>(device_.get());
+  if (has_depth()) {
+    geometry_.calibration = control_->read_calibration();
+    geometry_.depth_table = make_depth_table(geometry_.calibration);
+    if (kinect_options_.depth == DepthMode::kRegistered)
+      geometry_.registration = DepthRegistration::create(geometry_.calibration, geometry_.depth_table);
+  }
+  describe();
+  if (Status status = set_up_motor(); !status) return status;
+  return start_streams();
+}
+
+Status KinectSource::set_up_motor() {
+  motor_ = KinectMotor::open(device_->context(), device_->usb_device());
+  if (motor_ == nullptr) {
+    if (!kinect_options_.tilt_deg && !kinect_options_.fixed_led) return Status::ok();
+    return {ErrorCode::kUnsupported,
+            device_->camera().model() + ": tilt and LED need its motor device (045e:02b0), which is not there or not permitted"};
+  }
+  if (kinect_options_.fixed_led) motor_->set_led(*kinect_options_.fixed_led);
+  return kinect_options_.tilt_deg ? motor_->set_tilt(*kinect_options_.tilt_deg) : Status::ok();
+}
+
+void KinectSource::describe() {
+  const OpenCamera& camera = device_->camera();
+  info_.serial = camera.serial;
+  info_.color_width = kWidth;
+  info_.color_height = kHeight;
+  info_.stamp_clock = StampClock::kMonotonic;
+  const bool is_registered = !has_depth() || geometry_.registration.has_value();
+  info_.camera = nominal_camera(geometry_.calibration, is_registered);
+  if (has_depth()) {
+    info_.depth_width = kWidth;
+    info_.depth_height = kHeight;
+  }
+  info_.description =
+      camera.model() + (camera.serial.empty() ? "" : " " + camera.serial) + ", " + camera.location + ", depth " +
+      (!has_depth()    ? "off"
+       : is_registered ? "registered"
+                       : "not registered") +
+      (has_depth() && !(geometry_.calibration.zero_plane && geometry_.calibration.const_shift) ? ", generic depth scale" : "");
+}
+
+Status KinectSource::start_streams() {
+  if (Status status = device_->start_transfers(has_depth()); !status) return status;
+  Status status = control_->start_color();
+  if (status)
+    status = control_->set_color(kinect_options_.color,
+                                 device_->camera().release == kReleaseOf1414 && device_->camera().product == kProductCamera);
+  if (status && has_depth()) status = control_->start_depth();
+  if (!status) device_->stop_transfers();
+  return status;
+}
+
+void KinectSource::stop_streams() {
+  // A device that is gone or hangs cannot be asked to stop; the transfers end all the same.
+  if (!receiver_.report().is_gone && !is_reset_) {
+    if (control_->stop_color() && has_depth()) static_cast<void>(control_->stop_depth());
+  }
+  device_->stop_transfers();
+  give_back(Stream::kColor, &color_);
+  give_back(Stream::kDepth, &depth_);
+}
+
+KinectSource::~KinectSource() {
+  if (device_ == nullptr) return;
+  stop_streams();
+  if (motor_ && kinect_options_.is_led_status) motor_->set_led(Led::kBlinkGreen);  // as after power-up: nobody is using it
+}
+
+void KinectSource::give_back(Stream stream, RawFrame** frame) {
+  if (*frame != nullptr) receiver_.release(stream, std::exchange(*frame, nullptr));
+}
+
+void KinectSource::show(Led led) {
+  if (motor_ && kinect_options_.is_led_status) motor_->set_led(led);
+}
+
+bool KinectSource::is_depth_silent(steady_clock::time_point now) const {
+  const std::int64_t last_ns = receiver_.report().last_packet_ns[static_cast<std::size_t>(Stream::kDepth)];
+  return now - time_of(last_ns) > kSilence;
+}
+
+Pairing KinectSource::pairing(steady_clock::time_point now) const {
+  if (color_ == nullptr) return Pairing::kWait;
+  if (!has_depth()) return Pairing::kColorAlone;
+  const bool is_overdue = now - time_of(color_->complete_ns) > kDepthPatience;
+  return decide_pairing(color_->device_stamp, depth_ ? std::optional(depth_->device_stamp) : std::nullopt, is_overdue,
+                        kHalfPeriodTicks);
+}
+
+// Every turn takes or gives back a frame, or waits until the deadline, so that it ends.
+Status KinectSource::next(FrameBuffer* frame, milliseconds timeout) {
+  const steady_clock::time_point deadline = steady_clock::now() + timeout;
+  if (motor_) motor_->poll();
+  while (true) {
+    if (is_reset_ || receiver_.report().is_gone) return {ErrorCode::kUnavailable, info_.description + ": the Kinect is gone"};
+    const steady_clock::time_point now = steady_clock::now();
+    if (color_ == nullptr) color_ = receiver_.take(Stream::kColor);
+    if (depth_ == nullptr && has_depth()) depth_ = receiver_.take(Stream::kDepth);
+    switch (pairing(now)) {
+      case Pairing::kPair: deliver(true, frame); return Status::ok();
+      case Pairing::kColorAlone:
+        if (!has_depth() || !is_depth_silent(now)) {
+          num_unpaired_ += has_depth() ? 1 : 0;
+          deliver(false, frame);
+          return Status::ok();
+        }
+        give_back(Stream::kColor, &color_);  // half a camera is a stall, too
+        break;
+      case Pairing::kDropDepth:
+        ++num_unpaired_;
+        give_back(Stream::kDepth, &depth_);
+        break;
+      case Pairing::kWait:
+        if (now >= deadline) return stalled(timeout);
+        receiver_.wait_until(color_ ? std::min(deadline, time_of(color_->complete_ns) + kDepthPatience + milliseconds(1))
+                                    : deadline);
+        break;
+    }
+  }
+}
+
+void KinectSource::deliver(bool with_depth, FrameBuffer* frame) {
+  frame->sequence = sequence_++;
+  frame->stamp_ns = clock_.host_time_ns(color_->device_stamp, color_->arrival_ns);
+  const ImageView<std::uint8_t> mosaic{color_->bytes.data(), kWidth, kHeight, kWidth};
+  bayer_to_gray(mosaic, BayerOrder::kGrbg, &frame->gray);
+  if (wants_color_) {
+    bayer_to_bgr(mosaic, BayerOrder::kGrbg, &frame->color);
+  } else {
+    frame->color.resize(0, 0);
+  }
+  if (with_depth) {
+    convert_depth_image(frame);
+    give_back(Stream::kDepth, &depth_);
+  } else {
+    frame->depth.resize(0, 0);
+  }
+  give_back(Stream::kColor, &color_);
+  show(Led::kGreen);
+}
+
+void KinectSource::convert_depth_image(FrameBuffer* frame) {
+  unpack_pixels(depth_->bytes.data(), kNumPixels, 11, raw_depth_.data());
+  if (geometry_.registration) {
+    geometry_.registration->apply(raw_depth_, &frame->depth);
+  } else {
+    frame->depth.resize(kWidth, kHeight);
+    convert_depth(raw_depth_, geometry_.depth_table, frame->depth.pixels.data());
+  }
+}
+
+Status KinectSource::stalled(milliseconds timeout) {
+  show(Led::kBlinkRedYellow);
+  if (Status problem = device_->transfer_problem(); !problem)
+    return {ErrorCode::kTimeout, info_.description + ": " + problem.message()};
+  const ReceiverReport report = receiver_.report();
+  const std::uint64_t errors = report.transport_errors[0] + report.transport_errors[1];
+  const std::uint64_t packets = report.counts[0].packets + report.counts[1].packets;
+  const bool is_bandwidth = errors > packets / 10;
+  return {ErrorCode::kTimeout,
+          info_.description + ": no complete frame in " + std::to_string(timeout.count()) + " ms" +
+              (is_bandwidth ? " (" + std::to_string(errors) + " USB packets failed, " + std::to_string(packets) +
+                                  " arrived: too little USB bandwidth? plug it into a USB controller of its own)"
+                            : "")};
+}
+
+FrameSourceHealth KinectSource::health() const {
+  const ReceiverReport report = receiver_.report();
+  FrameSourceHealth health;
+  for (std::size_t i = 0; i < kNumStreams; ++i) {
+    health.packets_lost += std::max(report.counts[i].lost, report.transport_errors[i]);
+    health.frames_incomplete += report.counts[i].frames_incomplete;
+  }
+  health.frames_unpaired = num_unpaired_;
+  health.clock_drift_ppm = clock_.drift_ppm();
+  if (motor_) health.acceleration = motor_->acceleration();
+  return health;
+}
+
+Status KinectSource::restart() {
+  if (is_reset_ || receiver_.report().is_gone) return {ErrorCode::kUnavailable, info_.description + ": the Kinect is gone"};
+  stop_streams();
+  receiver_.restart();
+  clock_.reset();
+  if (Status status = start_streams(); !status) return {ErrorCode::kUnavailable, status.message()};
+  return Status::ok();
+}
+
+Status KinectSource::reset_device() {
+  stop_streams();
+  is_reset_ = true;
+  motor_.reset();  // sits behind the same hub
+  return device_->reset();
+}
+
+}  // namespace
+
+}  // namespace kinect
+
+Result<std::unique_ptr<FrameSource>> open_kinect_source(const SourceUrl& url, const FrameSourceOptions& options) {
+  const Result<kinect::KinectOptions> kinect_options = kinect::parse_kinect_options(url);
+  if (!kinect_options) return kinect_options.status();
+  return kinect::KinectSource::open(*kinect_options, options);
+}
+
+}  // namespace camloc
