@@ -10,6 +10,7 @@
 #include "drivers/replay_source.h"
 #include "drivers/sample_source.h"
 #include "drivers/source_url.h"
+#include "drivers/v4l2/v4l2_source.h"
 
 namespace camloc {
 
@@ -31,6 +32,8 @@ constexpr Scheme kSchemes[] = {
      "openni2://URI_SERIAL_OR_INDEX?width=640&height=480&rate_hz=30  a depth camera with an OpenNI2 driver; openni2:// is the first one"},
     {"oni", open_oni_source, "oni://FILE?speed=1&loop=0&frames=0:100:2&exclude=::50&registered=1  a recording of OpenNI or OpenNI2"},
     {"sample", open_sample_source, "sample://?rate_hz=30&frames=300&width=640&height=480  generated images of a room, for trying things without a camera"},
+    {"v4l2", open_v4l2_source,
+     "v4l2:///dev/video0?depth=/dev/video2&width=640&height=480&rate_hz=30&format=YUYV&depth_format=Z16&control.gain=10  cameras of the kernel; NODE or serial:XXXX"},
 };
 
 }  // namespace

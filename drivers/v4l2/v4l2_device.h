@@ -54,11 +54,12 @@ class V4l2Device {
 
   /// What the device lists, formats that are not read here included. Bounded, however long a device goes on.
   [[nodiscard]] std::vector<V4l2FormatOffer> offers() const;
+  /// The rates at one size; empty: the driver does not tell.
+  [[nodiscard]] std::vector<V4l2RateRange> rate_offers(std::uint32_t fourcc, int width, int height) const;
 
  private:
   V4l2Device(std::string path, V4l2Fd fd) : path_(std::move(path)), fd_(std::move(fd)) {}
   [[nodiscard]] std::vector<V4l2SizeOffer> size_offers(std::uint32_t fourcc) const;
-  [[nodiscard]] std::vector<V4l2RateRange> rate_offers(std::uint32_t fourcc, int width, int height) const;
 
   std::string path_, card_, driver_, bus_;
   V4l2Fd fd_;

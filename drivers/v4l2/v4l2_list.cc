@@ -14,7 +14,6 @@
 #include <system_error>
 
 #include "drivers/text.h"
-#include "drivers/v4l2/v4l2_pixel_format.h"
 
 namespace camloc {
 
@@ -85,9 +84,9 @@ int fitness(const V4l2DeviceInfo& node, V4l2Role role) {
   int best = 0;
   for (const V4l2FormatOffer& offer : node.formats) {
     const V4l2PixelFormat* format = find_v4l2_pixel_format(offer.fourcc);
-    if (format == nullptr) continue;
-    if (role == V4l2Role::kImage && format->can_be_image) best = std::max(best, format->has_color ? 2 : 1);
-    if (role == V4l2Role::kDepth && format->can_be_depth) best = std::max(best, format->can_be_image ? 1 : 2);
+    if (format == nullptr || !format->fits(role)) continue;
+    const bool is_sure = role == V4l2Role::kImage ? format->has_color : !format->can_be_image;
+    best = std::max(best, is_sure ? 2 : 1);
   }
   return best;
 }

@@ -10,6 +10,7 @@
 
 #include "core/base/result.h"
 #include "drivers/v4l2/v4l2_device.h"
+#include "drivers/v4l2/v4l2_pixel_format.h"
 
 namespace camloc {
 
@@ -38,9 +39,6 @@ struct V4l2DeviceInfo {
 
 /// What /sys says about the node `path`, which may be a link: `path` as /dev/videoN, serial, by_id, usb_node.
 [[nodiscard]] V4l2DeviceInfo describe_v4l2_node(const std::string& path, const V4l2Folders& folders);
-
-/// What a node is wanted for: the grey (or colour, or infrared) image, or depth.
-enum class V4l2Role { kImage, kDepth };
 
 /// The node of the device with this serial that fits the role best: for images one with colour before infrared, for depth one
 /// with Z16 or 11-bit disparity before one whose 16-bit words may be infrared. kUnavailable lists the serials there are.

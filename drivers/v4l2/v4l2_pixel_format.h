@@ -28,6 +28,9 @@ enum class PixelLayout : std::uint8_t {
   kPacked,   ///< 10 or 11 bits without gaps, see packed_pixels.h
 };
 
+/// What a node is wanted for: the grey (or colour, or infrared) image, or depth.
+enum class V4l2Role : std::uint8_t { kImage, kDepth };
+
 struct V4l2PixelFormat {
   std::uint32_t fourcc;
   PixelLayout layout;
@@ -38,6 +41,8 @@ struct V4l2PixelFormat {
   bool can_be_depth;
   unsigned num_planes = 1;    ///< of memory; the two parts of NV12 share one
   BayerOrder order = BayerOrder::kRggb;
+
+  [[nodiscard]] bool fits(V4l2Role role) const { return role == V4l2Role::kImage ? can_be_image : can_be_depth; }
 };
 
 /// In the order of preference for images, all else being equal: what costs least to turn into grey comes first.

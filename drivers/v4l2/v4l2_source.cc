@@ -1,0 +1,346 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// See v4l2_source.h.
+#include "drivers/v4l2/v4l2_source.h"
+
+#include <linux/usbdevice_fs.h>
+#include <sys/ioctl.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <utility>
+
+#include "drivers/v4l2/v4l2_controls.h"
+#include "drivers/v4l2/v4l2_settings.h"
+#include "drivers/v4l2/v4l2_stream.h"
+
+namespace camloc {
+
+namespace {
+
+constexpr double kUntoldRateHz = 30;  // for pairing, where a driver names no rate
+constexpr int kMaxTurns = 64;         // of next(): every buffer of both nodes several times over
+constexpr std::int64_t kNsPerMs = 1'000'000;
+
+std::string stream_text(const V4l2Stream& stream) {
+  const V4l2ImageLayout& layout = stream.layout();
+  char rate[32] = "";
+  if (stream.rate_hz() > 0) std::snprintf(rate, sizeof(rate), " at %.4g Hz", stream.rate_hz());
+  return stream.device().path() + " '" + stream.device().card() + "' " + fourcc_name(layout.format->fourcc) + " " + std::to_string(layout.width) + "x" +
+         std::to_string(layout.height) + rate;
+}
+
+std::string stamp_text(V4l2StampSource source) {
+  switch (source) {
+    case V4l2StampSource::kStartOfExposure: return "stamps of the start of exposure";
+    case V4l2StampSource::kEndOfFrame: return "stamps of the end of the frame, taken back by one interval";
+    case V4l2StampSource::kArrival: break;
+  }
+  return "warning: the driver names no clock, so stamps are times of arrival, taken back by one interval";
+}
+
+/// A stream and the frame of it that waits for its partner.
+struct Channel {
+  std::unique_ptr<V4l2Stream> stream;
+  std::optional<V4l2Frame> pending;
+  bool has_error = false;  ///< poll() said so
+
+  [[nodiscard]] bool lacks_frame() const { return stream && !pending; }
+  void release() {
+    if (stream && pending) stream->give_back(*pending);
+    pending.reset();
+  }
+};
+
+struct OpenedSource {
+  std::shared_ptr<V4l2Io> io;
+  std::unique_ptr<V4l2Stream> image, depth;
+  FrameSourceInfo info;
+  std::string usb_node;
+  V4l2Settings settings;
+  bool wants_color = false;
+};
+
+class V4l2Source final : public FrameSource {
+ public:
+  explicit V4l2Source(OpenedSource opened)
+      : io_(std::move(opened.io)),
+        image_{std::move(opened.image), {}},
+        depth_{std::move(opened.depth), {}},
+        info_(std::move(opened.info)),
+        usb_node_(std::move(opened.usb_node)),
+        settings_(std::move(opened.settings)),
+        gives_color_(opened.wants_color && image_.stream && image_.stream->layout().format->has_color) {
+    describe();
+  }
+
+  [[nodiscard]] const FrameSourceInfo& info() const override { return info_; }
+
+  [[nodiscard]] Status next(FrameBuffer* frame, std::chrono::milliseconds timeout) override {
+    if (is_closed()) return {ErrorCode::kUnavailable, "v4l2://: the device was reset; open it again"};
+    const std::int64_t deadline_ns = io_->monotonic_ns() + timeout.count() * kNsPerMs;
+    for (int turn = 0; turn < kMaxTurns; ++turn) {
+      for (Channel* channel : channels()) {
+        if (Status status = fill(channel); !status) return status;
+      }
+      if (is_complete()) return deliver(frame);
+      if (drop_without_partner()) continue;
+      bool is_late = false;
+      if (Status status = wait(deadline_ns, &is_late); !status) return status;
+      if (is_late) break;
+    }
+    return {ErrorCode::kTimeout, "no frame yet"};
+  }
+
+  [[nodiscard]] FrameSourceHealth health() const override {
+    FrameSourceHealth health;
+    for (const Channel* channel : {&image_, &depth_}) {
+      if (!channel->stream) continue;
+      health.packets_lost += channel->stream->num_lost();
+      health.frames_incomplete += channel->stream->num_damaged();
+    }
+    health.frames_incomplete += num_undecoded_;
+    health.frames_unpaired = num_unpaired_;
+    return health;
+  }
+
+  [[nodiscard]] Status restart() override {
+    if (is_closed()) return {ErrorCode::kUnavailable, "v4l2://: the device was reset; open it again"};
+    for (Channel* channel : channels()) {
+      if (!channel->stream) continue;
+      channel->pending.reset();  // stopping takes all buffers back
+      channel->has_error = false;
+      channel->stream->stop();
+    }
+    for (Channel* channel : channels()) {
+      if (!channel->stream) continue;
+      if (Status status = channel->stream->start(); !status) return status;
+    }
+    return Status::ok();
+  }
+
+  [[nodiscard]] Status reset_device() override {
+    if (usb_node_.empty()) return {ErrorCode::kUnsupported, "v4l2://: the camera is not on USB"};
+    const V4l2Fd device(*io_, io_->open(usb_node_));
+    if (device.get() < 0) return {ErrorCode::kUnsupported, usb_node_ + ": " + errno_text(device.get()) + "; a reset needs the right to write to it"};
+    for (Channel* channel : channels()) {
+      channel->pending.reset();
+      channel->stream.reset();
+    }
+    const int error = io_->ioctl(device.get(), USBDEVFS_RESET, nullptr);
+    // The device may come back as another one, which is a success.
+    if (error == 0 || error == -ENODEV) return Status::ok();
+    return {ErrorCode::kUnavailable, usb_node_ + ": reset failed (" + errno_text(error) + ")"};
+  }
+
+ private:
+  std::array<Channel*, 2> channels() { return {&image_, &depth_}; }
+  [[nodiscard]] bool is_closed() const { return !image_.stream && !depth_.stream; }
+  Channel& main_channel() { return image_.stream ? image_ : depth_; }
+
+  Status fill(Channel* channel) {
+    if (!channel->lacks_frame()) return Status::ok();
+    V4l2Frame frame;
+    switch (channel->stream->take(&frame)) {
+      case V4l2Stream::Take::kFrame: channel->pending = frame; return Status::ok();
+      case V4l2Stream::Take::kGone: return channel->stream->problem();
+      case V4l2Stream::Take::kDamaged: return {ErrorCode::kCorrupt, channel->stream->device().path() + ": a frame came broken or short"};
+      case V4l2Stream::Take::kNothing: break;
+    }
+    if (!channel->has_error) return Status::ok();
+    return {ErrorCode::kUnavailable, channel->stream->device().path() + ": the driver reports an error and gives no frame"};
+  }
+
+  [[nodiscard]] bool is_complete() const {
+    if (image_.lacks_frame() || depth_.lacks_frame()) return false;
+    return !is_pair() || std::abs(offset_ns()) <= pairing_tolerance_ns();
+  }
+  [[nodiscard]] bool is_pair() const { return image_.stream && depth_.stream; }
+  [[nodiscard]] std::int64_t offset_ns() const { return image_.pending->stamp_ns - depth_.pending->stamp_ns; }
+  /// Half the time between two frames of the faster node: no other frame can be nearer.
+  [[nodiscard]] std::int64_t pairing_tolerance_ns() const {
+    const auto rate_hz = [](const Channel& channel) { return channel.stream->rate_hz() > 0 ? channel.stream->rate_hz() : kUntoldRateHz; };
+    return std::llround(0.5e9 / std::max(rate_hz(image_), rate_hz(depth_)));
+  }
+
+  /// Of two frames too far apart the older one has no partner any more.
+  bool drop_without_partner() {
+    if (!is_pair() || !image_.pending || !depth_.pending) return false;
+    ++num_unpaired_;
+    (offset_ns() < 0 ? image_ : depth_).release();
+    return true;
+  }
+
+  /// Until a node that lacks a frame has something to say.
+  Status wait(std::int64_t deadline_ns, bool* is_late) {
+    std::array<pollfd, 2> fds{};
+    std::array<Channel*, 2> waiting{};
+    std::size_t count = 0;
+    for (Channel* channel : channels()) {
+      if (!channel->lacks_frame()) continue;
+      fds[count] = {channel->stream->device().fd(), POLLIN, 0};
+      waiting[count++] = channel;
+    }
+    const std::int64_t left_ns = std::max<std::int64_t>(deadline_ns - io_->monotonic_ns(), 0);
+    const int ready = io_->poll(fds.data(), count, static_cast<int>((left_ns + kNsPerMs - 1) / kNsPerMs));
+    if (ready < 0) return {ErrorCode::kUnavailable, "v4l2://: poll: " + errno_text(ready)};
+    for (std::size_t i = 0; i < count; ++i) waiting[i]->has_error = (fds[i].revents & (POLLERR | POLLHUP | POLLNVAL)) != 0;
+    *is_late = ready == 0 && io_->monotonic_ns() >= deadline_ns;
+    return Status::ok();
+  }
+
+  Status deliver(FrameBuffer* frame) {
+    Channel& main = main_channel();
+    frame->sequence = main.pending->exposure;
+    frame->stamp_ns = main.pending->stamp_ns + settings_.stamp_offset_ns;
+    if (main.stream->stamp_source() != described_source_) describe();
+    Status status = convert(frame);
+    for (Channel* channel : channels()) channel->release();
+    if (!status) ++num_undecoded_;
+    return status;
+  }
+
+  Status convert(FrameBuffer* frame) {
+    frame->gray.resize(0, 0);
+    frame->depth.resize(0, 0);
+    frame->color.resize(0, 0);
+    if (depth_.stream) convert_to_depth(depth_.stream->layout(), depth_.pending->planes, &frame->depth);
+    if (!image_.stream) return Status::ok();
+    const V4l2ImageLayout& layout = image_.stream->layout();
+    const unsigned bits = settings_.gray_bits.value_or(layout.format->significant_bits);
+    if (Status status = convert_to_gray(layout, image_.pending->planes, bits, &frame->gray); !status || !gives_color_) return status;
+    return convert_to_bgr(layout, image_.pending->planes, &scratch_, &frame->color);
+  }
+
+  void describe() {
+    described_source_ = main_channel().stream->stamp_source();
+    info_.description.clear();
+    if (image_.stream) info_.description = stream_text(*image_.stream);
+    if (depth_.stream) info_.description += (image_.stream ? ", depth " : "depth ") + stream_text(*depth_.stream);
+    info_.description += "; " + stamp_text(described_source_);
+  }
+
+  std::shared_ptr<V4l2Io> io_;
+  Channel image_, depth_;  // after io_, which they use until they are gone
+  FrameSourceInfo info_;
+  std::string usb_node_;
+  V4l2Settings settings_;
+  bool gives_color_;
+  V4l2StampSource described_source_ = V4l2StampSource::kArrival;
+  std::uint64_t num_unpaired_ = 0;
+  std::uint64_t num_undecoded_ = 0;
+  Image<std::uint8_t> scratch_;
+};
+
+/// The path of a node that may be named by its serial.
+Result<std::string> resolve_node(V4l2Io& io, const V4l2Folders& folders, const V4l2NodeSettings& node) {
+  constexpr std::string_view kSerial = "serial:";
+  if (!node.node.starts_with(kSerial)) return node.node;
+  return find_v4l2_node(io, folders, node.node.substr(kSerial.size()), node.wish.role);
+}
+
+Result<std::unique_ptr<V4l2Stream>> open_stream(V4l2Device device, const V4l2NodeSettings& node) {
+  const Result<V4l2Agreement> agreement = negotiate_v4l2(device, node.wish);
+  if (!agreement) return agreement.status();
+  if (Status status = set_v4l2_controls(device, node.controls); !status) return status;
+  return V4l2Stream::open(std::move(device), *agreement);
+}
+
+/// A node alone may turn out to give depth: by the format asked for, or because it offers nothing else.
+V4l2Role role_of_only_node(const V4l2Device& device, const V4l2Wish& wish) {
+  if (wish.fourcc) return find_v4l2_pixel_format(*wish.fourcc)->can_be_image ? V4l2Role::kImage : V4l2Role::kDepth;
+  bool gives_depth = false;
+  for (const V4l2FormatOffer& offer : device.offers()) {
+    const V4l2PixelFormat* format = find_v4l2_pixel_format(offer.fourcc);
+    if (format == nullptr) continue;
+    if (format->can_be_image) return V4l2Role::kImage;
+    gives_depth = gives_depth || format->can_be_depth;
+  }
+  return gives_depth ? V4l2Role::kDepth : V4l2Role::kImage;
+}
+
+Status no_node_named(const SourceUrl& url, V4l2Io& io, const V4l2Folders& folders) {
+  std::string there;
+  for (const V4l2DeviceInfo& node : list_v4l2_devices(io, folders)) there += (there.empty() ? "" : ", ") + node.path + " '" + node.name + "'";
+  return {ErrorCode::kInvalid, url.text + ": names no camera; expected v4l2:///dev/videoN or v4l2://serial:XXXX; there is " + (there.empty() ? "none" : there)};
+}
+
+class Opener {
+ public:
+  Opener(std::shared_ptr<V4l2Io> io, const V4l2Folders& folders, const SourceUrl& url) : url_(url), folders_(folders) { opened_.io = std::move(io); }
+
+  Result<std::unique_ptr<FrameSource>> open(const FrameSourceOptions& options) {
+    Result<V4l2Settings> settings = parse_v4l2_settings(url_, options);
+    if (!settings) return settings.status();
+    opened_.settings = std::move(settings).value();
+    opened_.wants_color = options.wants_color;
+    if (Status status = open_streams(); !status) return status;
+    fill_info();
+    for (V4l2Stream* stream : {opened_.image.get(), opened_.depth.get()}) {
+      if (stream == nullptr) continue;
+      if (Status status = stream->start(); !status) return status;
+    }
+    return std::unique_ptr<FrameSource>(std::make_unique<V4l2Source>(std::move(opened_)));
+  }
+
+ private:
+  Status open_streams() {
+    V4l2Settings& settings = opened_.settings;
+    if (settings.image.node.empty() && settings.depth.node.empty()) return no_node_named(url_, *opened_.io, folders_);
+    if (!settings.image.node.empty()) {
+      if (Status status = open_node(&settings.image); !status) return status;
+    }
+    if (settings.depth.node.empty()) return Status::ok();
+    return open_node(&settings.depth);
+  }
+
+  Status open_node(V4l2NodeSettings* node) {
+    const Result<std::string> path = resolve_node(*opened_.io, folders_, *node);
+    if (!path) return path.status();
+    Result<V4l2Device> device = V4l2Device::open(*opened_.io, *path);
+    if (!device) return device.status();
+    const V4l2DeviceInfo info = describe_v4l2_node(*path, folders_);
+    if (info.path == first_path_) return {ErrorCode::kInvalid, url_.text + ": image and depth are one node, which gives one stream"};
+    if (first_path_.empty()) {
+      first_path_ = info.path;
+      opened_.info.serial = info.serial;
+      opened_.usb_node = info.usb_node;
+    }
+    if (node->wish.role == V4l2Role::kImage && opened_.settings.depth.node.empty()) node->wish.role = role_of_only_node(*device, node->wish);
+    Result<std::unique_ptr<V4l2Stream>> stream = open_stream(std::move(device).value(), *node);
+    if (!stream) return stream.status();
+    (node->wish.role == V4l2Role::kImage ? opened_.image : opened_.depth) = std::move(stream).value();
+    return Status::ok();
+  }
+
+  void fill_info() {
+    FrameSourceInfo& info = opened_.info;
+    info.stamp_clock = StampClock::kMonotonic;
+    info.camera = opened_.settings.camera;
+    if (opened_.image) info.color_width = opened_.image->layout().width, info.color_height = opened_.image->layout().height;
+    if (opened_.depth) info.depth_width = opened_.depth->layout().width, info.depth_height = opened_.depth->layout().height;
+  }
+
+  const SourceUrl& url_;
+  const V4l2Folders& folders_;
+  OpenedSource opened_;
+  std::string first_path_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<FrameSource>> open_v4l2_source_on(std::shared_ptr<V4l2Io> io, const V4l2Folders& folders, const SourceUrl& url,
+                                                         const FrameSourceOptions& options) {
+  return Opener(std::move(io), folders, url).open(options);
+}
+
+Result<std::unique_ptr<FrameSource>> open_v4l2_source(const SourceUrl& url, const FrameSourceOptions& options) {
+  return open_v4l2_source_on(make_system_v4l2_io(), {}, url, options);
+}
+
+}  // namespace camloc
