@@ -31,8 +31,9 @@ std::optional<ZeroPlane> parse_zero_plane(std::span<const std::uint8_t> body) {
   const auto number = [body](std::size_t index) {
     return static_cast<double>(std::bit_cast<float>(double_word_at(body, kZeroPlaneOffset + 4 * index)));
   };
-  const ZeroPlane plane{number(0), number(1), number(2), number(3)};
+  ZeroPlane plane{number(0), number(1), number(2), number(3)};
   if (!plane.is_plausible()) return std::nullopt;
+  plane.color_distance_cm = kColorDistanceCm;
   return plane;
 }
 

@@ -12,10 +12,13 @@
 
 namespace camloc::kinect {
 
+/// The devices say 2.3 cm, but their registration blocks belong to this: OpenNI and libfreenect take it for every Kinect.
+inline constexpr double kColorDistanceCm = 2.4;
+
 /// Geometry of the reference plane against which disparities are measured.
 struct ZeroPlane {
   double emitter_distance_cm = 7.5;    ///< infrared camera to projector
-  double color_distance_cm = 2.3;      ///< infrared camera to colour camera
+  double color_distance_cm = kColorDistanceCm;  ///< infrared camera to colour camera
   double reference_distance_mm = 120;  ///< focal length of the infrared camera in the unit of the next line, hence in pixels
   double pixel_size_mm = 0.1042;       ///< of a pixel of the 1280 pixels wide sensor, on the reference plane
   [[nodiscard]] bool is_plausible() const;

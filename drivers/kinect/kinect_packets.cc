@@ -111,15 +111,23 @@ PacketResult FrameAssembler::push(std::span<const std::uint8_t> packet, std::int
 
   counts_.lost += static_cast<std::uint64_t>(gap);
   if (kind == kFlagStart) begin_frame(arrival_ns);
-  const std::size_t index = kind == kFlagStart ? 0 : next_index_ + static_cast<std::size_t>(gap);
+  std::size_t index = kind == kFlagStart ? 0 : next_index_ + static_cast<std::size_t>(gap);
+  if (index >= num_places_ && state_ != State::kUnsynchronized) {  // the first packet of a frame, at least, was in the gap
+    if (state_ == State::kInFrame) break_frame();
+    break_frame();
+    index -= num_places_;
+  }
   has_sequence_ = true;
   next_sequence_ = static_cast<std::uint8_t>(header->sequence + 1);
   next_index_ = index + 1;
-  if (state_ == State::kInFrame && fits(index, kind, payload.size()) && is_of_this_exposure(header->stamp)) {
-    return place(index, *header, payload);
+  if (state_ == State::kInFrame) {
+    if (fits(index, kind, payload.size()) && is_of_this_exposure(header->stamp)) return place(index, *header, payload);
+    break_frame();
   }
-  if (state_ == State::kInFrame || state_ == State::kBetweenFrames) break_frame();
-  if (kind == kFlagEnd && state_ == State::kBroken) state_ = State::kBetweenFrames;
+  if (kind == kFlagEnd && state_ == State::kBroken) {
+    state_ = State::kBetweenFrames;
+    next_index_ = num_places_;
+  }
   return PacketResult::kNothing;
 }
 
