@@ -129,11 +129,7 @@ int main(int argc, char** argv) {
   }
   const int code = wait_for_end(pid, signals);
   control->reset();
-  if (!arguments.counts_file.empty()) {
-    std::FILE* const file = std::fopen(arguments.counts_file.c_str(), "we");
-    if (file == nullptr) return fail({ErrorCode::kIo, arguments.counts_file + ": " + std::strerror(errno)}, kFailed);
-    std::fprintf(file, "%s\n", with_cpu_time(host.command("counts")).c_str());
-    std::fclose(file);
-  }
-  return code;
+  if (arguments.counts_file.empty()) return code;
+  const Status status = write_counts(arguments.counts_file, with_cpu_time(host.command("counts")));
+  return status ? code : fail(status, kFailed);
 }

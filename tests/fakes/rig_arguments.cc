@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/fakes/rig_arguments.h"
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
 namespace camloc::fakes {
 
 void add_rig_options(CLI::App* app, RigArguments* a) {
@@ -46,6 +50,14 @@ Status finish(RigArguments* a) {
     if (!command) return command.status();
     a->schedule.push_back(*command);
   }
+  return {};
+}
+
+Status write_counts(const std::string& path, const std::string& counts) {
+  std::FILE* const file = std::fopen(path.c_str(), "we");
+  if (file == nullptr) return {ErrorCode::kIo, path + ": " + std::strerror(errno)};
+  std::fprintf(file, "%s\n", counts.c_str());
+  std::fclose(file);
   return {};
 }
 

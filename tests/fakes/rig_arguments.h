@@ -29,5 +29,7 @@ struct RigArguments {
 void add_rig_options(CLI::App* app, RigArguments* arguments);
 /// Checks what the parser cannot, and fills `rig` and `schedule`.
 [[nodiscard]] Status finish(RigArguments* arguments);
+/// For --counts.
+[[nodiscard]] Status write_counts(const std::string& path, const std::string& counts);
 
 }  // namespace camloc::fakes
