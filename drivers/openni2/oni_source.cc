@@ -121,7 +121,7 @@ class OniSource final : public FrameSource {
     const OniFormat& format = recording_.color.formats[entry.format];
     if (Status status = check_format(format, recording_.color.formats.front()); !status) return status;
     if (Status status = recording_.file.read_payload(entry, &bytes_); !status) return status;
-    if (recording_.color.codec == OniCodec::kJpeg) return load_jpeg(format);
+    if (format.pixels.layout == PixelLayout::kJpeg) return load_jpeg(format);
     const RawImage raw = raw_image(format, bytes_);
     Status status = to_gray(raw, &loaded_.gray);
     return status && options_.wants_color ? to_bgr(raw, &loaded_.color) : status;

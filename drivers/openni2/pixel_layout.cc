@@ -126,17 +126,20 @@ std::size_t bytes_per_pixel(PixelLayout layout) {
 
 Status check_raw_image(const RawImage& image) {
   constexpr int kMaxSide = 16384;
-  const std::string what = std::string("image of ") + std::to_string(image.width) + "x" + std::to_string(image.height) + " " + name_of(image.layout);
-  if (image.width <= 0 || image.height <= 0 || image.width > kMaxSide || image.height > kMaxSide) return {ErrorCode::kCorrupt, what + ": size out of range"};
+  // The words are put together on an error alone: this is on the path of every frame.
+  const auto bad = [&image](const std::string& why) {
+    return Status(ErrorCode::kCorrupt, "image of " + std::to_string(image.width) + "x" + std::to_string(image.height) + " " + name_of(image.layout) + " " + why);
+  };
+  if (image.width <= 0 || image.height <= 0 || image.width > kMaxSide || image.height > kMaxSide) return bad("is out of range");
   const bool has_pairs = image.layout == PixelLayout::kUyvy || image.layout == PixelLayout::kYuyv;
-  if (has_pairs && image.width % 2 != 0) return {ErrorCode::kCorrupt, what + ": an odd width has no pairs of pixels"};
+  if (has_pairs && image.width % 2 != 0) return bad("has an odd width and so no pairs of pixels");
   const std::size_t row_bytes = static_cast<std::size_t>(image.width) * bytes_per_pixel(image.layout);
+  if (row_bytes == 0) return bad("is compressed");
   // Compared by division: a stride that lies must not wrap the product.
   const bool is_fine = image.stride_bytes >= row_bytes && image.bytes.size() >= row_bytes &&
                        (image.bytes.size() - row_bytes) / image.stride_bytes >= static_cast<std::size_t>(image.height - 1);
   if (is_fine) return Status::ok();
-  return {ErrorCode::kCorrupt, what + " with " + std::to_string(image.stride_bytes) + " bytes a row does not fit into " +
-                                   std::to_string(image.bytes.size()) + " bytes"};
+  return bad("with " + std::to_string(image.stride_bytes) + " bytes a row does not fit into " + std::to_string(image.bytes.size()) + " bytes");
 }
 
 Status to_gray(const RawImage& image, Image<std::uint8_t>* gray) { return convert(image, gray, gray_at); }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// openni2_recorder FILE LOSSY: records all streams of the first device with OpenNI2's own recorder, until two quiet seconds.
+// openni2_recorder FILE LOSSY: records all streams of the first device with OpenNI2's own recorder, until a quiet second.
 // A program of its own because the recorder now and then hangs when it is closed (seen once in some twenty runs).
 #include <OniCAPI.h>
 #include <unistd.h>
@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
   for (OniStreamHandle stream : streams) oniStreamStart(stream);
   int index = 0;
   OniFrame* frame = nullptr;
-  while (oniWaitForAnyStream(streams.data(), static_cast<int>(streams.size()), &index, 2000) == ONI_STATUS_OK) {
+  while (oniWaitForAnyStream(streams.data(), static_cast<int>(streams.size()), &index, 1000) == ONI_STATUS_OK) {
     if (oniStreamReadFrame(streams[static_cast<std::size_t>(index)], &frame) == ONI_STATUS_OK) oniFrameRelease(frame);
   }
   for (OniStreamHandle stream : streams) oniStreamStop(stream);

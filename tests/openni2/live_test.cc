@@ -19,6 +19,7 @@
 
 #include "drivers/frame_source.h"
 #include "drivers/openni2/installation.h"
+#include "tests/openni2/thread_allocations.h"
 #include "tests/drivers/test_folder.h"
 #include "tests/fakes/openni2_synthetic.h"
 
@@ -40,7 +41,7 @@ std::int64_t now_ns() {
   return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
-class Openni2Live : public testing::Test {
+class Openni2Live : public ::testing::Test {
  protected:
   void SetUp() override {
     if (void* library = ::dlopen("libOpenNI2.so.0", RTLD_NOW | RTLD_NODELETE); library == nullptr) GTEST_SKIP() << "libOpenNI2 is not installed (package libopenni2-0)";
@@ -334,6 +335,48 @@ TEST_F(Openni2Live, InstallationNamesDriversAndDevices) {
   EXPECT_EQ(installation.devices[0].usb_id, "1d27:0601");
 }
 
+TEST_F(Openni2Live, AllocatesNothingPerFrame) {
+  if (!testing::can_count_thread_allocations()) GTEST_SKIP() << "a sanitizer owns the allocator";
+  control().real_fps = 100;
+  auto source = open("openni2://", true);
+  FrameBuffer frame;
+  // Two images of each kind take turns.
+  for (int i = 0; i < 30; ++i) ASSERT_TRUE(next(source.get(), &frame));
+  const std::uint64_t before = testing::num_thread_allocations();
+  for (int i = 0; i < 100; ++i) (void)source->next(&frame, milliseconds(1000));
+  EXPECT_EQ(testing::num_thread_allocations() - before, 0U);
+}
+
+/// Run one by one with LD_LIBRARY_PATH on an installation that is broken so (see CMakeLists.txt).
+TEST(Openni2Broken, DISABLED_unloadable) {
+  const Status status = open_frame_source("openni2://").status();
+  EXPECT_EQ(status.code(), ErrorCode::kUnavailable);
+  EXPECT_NE(status.message().find("libopenni2-0"), std::string::npos) << status.message();
+  const Openni2Installation installation = inspect_openni2();
+  EXPECT_FALSE(installation.is_library_found);
+  EXPECT_EQ(installation.problem, status.message());
+}
+
+TEST(Openni2Broken, DISABLED_other_version) {
+  const Status status = open_frame_source("openni2://").status();
+  EXPECT_EQ(status.code(), ErrorCode::kUnsupported);
+  EXPECT_NE(status.message().find("libopenni2-0"), std::string::npos) << status.message();
+  EXPECT_FALSE(inspect_openni2().is_library_found);
+}
+
+TEST(Openni2Broken, DISABLED_without_drivers) {
+  if (::dlopen("libOpenNI2.so.0", RTLD_NOW | RTLD_NODELETE) == nullptr) GTEST_SKIP() << "libOpenNI2 is not installed (package libopenni2-0)";
+  for (int i = 0; i < 3; ++i) {
+    const Status status = open_frame_source("openni2://").status();
+    EXPECT_EQ(status.code(), ErrorCode::kUnavailable);
+    EXPECT_NE(status.message().find("OpenNI2/Drivers"), std::string::npos) << status.message();
+  }
+  const Openni2Installation installation = inspect_openni2();
+  EXPECT_TRUE(installation.is_library_found);
+  EXPECT_NE(installation.problem, "");
+  EXPECT_TRUE(installation.drivers.empty());
+}
+
 #ifdef CAMLOC_OPENNI2_RECORDER
 
 /// Records `num_frames` of each stream with OpenNI2's recorder, which is tried again when it hangs on closing.
@@ -350,26 +393,24 @@ bool record(const std::string& path, int num_frames, const std::string& environm
 TEST_F(Openni2Live, RecordingComesBackFrameByFrame) {
   const TestFolder folder;
   constexpr int kNumFrames = 120;
-  for (const int depth_format : {100, 101}) {
-    for (const std::string mirror : {"0", "1"}) {
-      control().depth_format = depth_format;
-      ASSERT_TRUE(record(folder / "whole.oni", kNumFrames, "CAMLOC_SYNTHETIC_MIRROR=" + mirror + " CAMLOC_SYNTHETIC_DEPTH_FORMAT=" + std::to_string(depth_format), false));
-      auto source = open("oni://" + (folder / "whole.oni") + "?registered=1", true);
-      ASSERT_NE(source, nullptr);
-      EXPECT_EQ(source->info().num_frames, static_cast<std::uint64_t>(kNumFrames));
-      EXPECT_EQ(source->info().description.find("cut off"), std::string::npos) << source->info().description;
-      ASSERT_TRUE(source->info().camera.has_value());
-      EXPECT_DOUBLE_EQ(source->info().camera->depth_unit_m, depth_format == 100 ? 1e-3 : 1e-4);
-      FrameBuffer frame;
-      for (int i = 0; i < kNumFrames; ++i) {
-        ASSERT_TRUE(source->next(&frame, milliseconds(1000)));
-        EXPECT_EQ(frame.sequence, static_cast<std::uint64_t>(i));
-        EXPECT_NEAR(static_cast<double>(frame.stamp_ns), i * 1e9 / 30, 1000);
-        expect_color(frame, i);
-        expect_depth(frame, i);
-      }
-      EXPECT_EQ(source->next(&frame, milliseconds(0)).code(), ErrorCode::kEnd);
+  for (const auto& [depth_format, mirror] : {std::pair{100, "1"}, {101, "0"}}) {
+    const std::string environment = std::string("CAMLOC_SYNTHETIC_MIRROR=") + mirror + " CAMLOC_SYNTHETIC_DEPTH_FORMAT=" + std::to_string(depth_format);
+    ASSERT_TRUE(record(folder / "whole.oni", kNumFrames, environment, false));
+    auto source = open("oni://" + (folder / "whole.oni") + "?registered=1", true);
+    ASSERT_NE(source, nullptr);
+    EXPECT_EQ(source->info().num_frames, static_cast<std::uint64_t>(kNumFrames));
+    EXPECT_EQ(source->info().description.find("cut off"), std::string::npos) << source->info().description;
+    ASSERT_TRUE(source->info().camera.has_value());
+    EXPECT_DOUBLE_EQ(source->info().camera->depth_unit_m, depth_format == 100 ? 1e-3 : 1e-4);
+    FrameBuffer frame;
+    for (int i = 0; i < kNumFrames; ++i) {
+      ASSERT_TRUE(source->next(&frame, milliseconds(1000)));
+      EXPECT_EQ(frame.sequence, static_cast<std::uint64_t>(i));
+      EXPECT_NEAR(static_cast<double>(frame.stamp_ns), i * 1e9 / 30, 1000);
+      expect_color(frame, i);
+      expect_depth(frame, i);
     }
+    EXPECT_EQ(source->next(&frame, milliseconds(0)).code(), ErrorCode::kEnd);
   }
 }
 

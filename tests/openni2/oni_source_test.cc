@@ -238,6 +238,17 @@ TEST(OniSource, SurvivesChangedBytes) {
   EXPECT_GT(num_open, 100);
 }
 
+TEST(OniSource, ReadsJpegThatTheDeviceDelivered) {
+  const TestFolder folder;
+  ASSERT_TRUE(write_jpeg(folder / "image.jpg", smooth_color(32, 24)));
+  const std::vector<std::uint8_t> jpeg = bytes_of(folder / "image.jpg");
+  OniWriter writer;
+  writer.node(2, "Image", 3, "NONE").mode(2, 32, 24).number(2, "oniPixelFormat", 204).frame(2, 0, 1, std::string(jpeg.begin(), jpeg.end())).end();
+  auto source = open_bytes(folder, writer.bytes());
+  ASSERT_TRUE(source) << source.status().message();
+  EXPECT_EQ(play(source->get()).frames.size(), 1U);
+}
+
 TEST(OniSource, ReadsJpegColour) {
   const TestFolder folder;
   const ColorImage image = smooth_color(32, 24);

@@ -100,6 +100,7 @@ TEST(OniPixels, NeverReadsBeyondTheData) {
                                               {-1, 10, std::size_t{10}}, {10, 2, ~std::size_t{0}}, {10, 1 << 30, std::size_t{10}}, {1, 2, std::size_t{0}}, {101, 1, std::size_t{101}}}) {
     EXPECT_EQ(to_gray({bytes, width, height, stride, PixelLayout::kGray8, false}, &gray).code(), ErrorCode::kCorrupt) << width << "x" << height << " " << stride;
   }
+  EXPECT_EQ(to_gray({bytes, 1, 1, 0, PixelLayout::kJpeg, false}, &gray).code(), ErrorCode::kCorrupt);
   EXPECT_TRUE(to_gray({bytes, 10, 10, 10, PixelLayout::kGray8, false}, &gray));
   EXPECT_EQ(to_gray({bytes, 3, 2, 6, PixelLayout::kUyvy, false}, &gray).code(), ErrorCode::kCorrupt);  // an odd width
   EXPECT_EQ(to_gray({bytes, 2, 2, 4, PixelLayout::kDepth16, false}, &gray).code(), ErrorCode::kUnsupported);
