@@ -23,7 +23,7 @@ constexpr double kColorFocalPx = 525.0;
 
 bool ZeroPlane::is_plausible() const {
   return is_within(emitter_distance_cm, 1, 30) && is_within(color_distance_cm, 0.5, 20) &&
-         is_within(reference_distance_mm, 20, 1000) && is_within(pixel_size_mm, 0.01, 2) && is_within(focal_px(), 300, 1200);
+         is_within(reference_distance_cm, 20, 1000) && is_within(pixel_size_cm, 0.01, 2) && is_within(focal_px(), 300, 1200);
 }
 
 std::optional<ZeroPlane> parse_zero_plane(std::span<const std::uint8_t> body) {

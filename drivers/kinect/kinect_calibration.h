@@ -19,11 +19,11 @@ inline constexpr double kColorDistanceCm = 2.4;
 struct ZeroPlane {
   double emitter_distance_cm = 7.5;    ///< infrared camera to projector
   double color_distance_cm = kColorDistanceCm;  ///< infrared camera to colour camera
-  double reference_distance_mm = 120;  ///< focal length of the infrared camera in the unit of the next line, hence in pixels
-  double pixel_size_mm = 0.1042;       ///< of a pixel of the 1280 pixels wide sensor, on the reference plane
+  double reference_distance_cm = 120;  ///< of the plane from the infrared camera
+  double pixel_size_cm = 0.1042;       ///< on that plane, of a pixel of the sensor, which is 1280 pixels wide
   [[nodiscard]] bool is_plausible() const;
   /// Of the depth image, 640 pixels wide.
-  [[nodiscard]] double focal_px() const { return reference_distance_mm / (2 * pixel_size_mm); }
+  [[nodiscard]] double focal_px() const { return reference_distance_cm / (2 * pixel_size_cm); }
 };
 
 /// Coefficients of two polynomials of third degree over the depth image, in fixed point and as forward differences: the

@@ -12,12 +12,12 @@ namespace {
 
 constexpr double kQuartersPerPixel = 4;  // raw disparities are quarter pixels
 constexpr double kPixelOffset = 0.375;   // of the correlation window's centre
-constexpr double kMmPerUnit = 10;        // the zero plane's numbers mix centimetres and their tenths so that this is left
+constexpr double kMmPerCm = 10;
 
 double triangulated_mm(int raw, const ZeroPlane& plane, int const_shift) {
   const double disparity_px = (raw - kQuartersPerPixel * const_shift) / kQuartersPerPixel - kPixelOffset;
-  const double x = disparity_px * plane.pixel_size_mm;
-  return kMmPerUnit * (x * plane.reference_distance_mm / (plane.emitter_distance_cm - x) + plane.reference_distance_mm);
+  const double shift_cm = disparity_px * plane.pixel_size_cm;
+  return kMmPerCm * (shift_cm * plane.reference_distance_cm / (plane.emitter_distance_cm - shift_cm) + plane.reference_distance_cm);
 }
 
 double public_model_mm(int raw) { return 1000.0 / (3.3309495161 - 0.0030711016 * raw); }

@@ -90,8 +90,8 @@ std::uint32_t place_of(double x, double y, int start_lines) {
 // Displacement of a pixel at distance z against one at infinity, towards smaller columns for the near: b f (1/z0 - 1/z).
 std::int32_t shift_of(std::uint16_t depth_mm, const ZeroPlane& plane) {
   if (depth_mm == 0) return 0;
-  const double baseline_px = plane.color_distance_cm / (2 * plane.pixel_size_mm);  // on the reference plane
-  const double reference_mm = 10 * plane.reference_distance_mm;
+  const double baseline_px = plane.color_distance_cm / (2 * plane.pixel_size_cm);  // on the reference plane
+  const double reference_mm = 10 * plane.reference_distance_cm;
   const double shift_px = baseline_px * (depth_mm - reference_mm) / depth_mm + kShiftOffsetPx;
   return static_cast<std::int32_t>(std::clamp(shift_px, -1000.0, 1000.0) * kSubpixels);
 }
