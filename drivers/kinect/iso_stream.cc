@@ -35,23 +35,37 @@ bool IsoStream::submit(libusb_transfer* transfer) {
   return false;
 }
 
-Status IsoStream::start(libusb_device_handle* handle, std::uint8_t endpoint, int packet_bytes) {
-  assert(num_in_flight_ == 0);
+bool IsoStream::lacks_memory() const { return submit_error_ == LIBUSB_ERROR_NO_MEM || submit_errno_ == ENOMEM; }
+
+void IsoStream::allocate(int packets_per_transfer, int packet_bytes) {
+  packets_per_transfer_ = packets_per_transfer;
+  slots_ = std::vector<Slot>(static_cast<std::size_t>(kPacketsInFlight / packets_per_transfer));
+  for (Slot& slot : slots_) {
+    slot.buffer.resize(static_cast<std::size_t>(packet_bytes) * static_cast<std::size_t>(packets_per_transfer));
+    slot.transfer.reset(libusb_alloc_transfer(packets_per_transfer));
+  }
+}
+
+Status IsoStream::submit_all(libusb_device_handle* handle, std::uint8_t endpoint, int packet_bytes) {
   is_stopping_ = false;
   submit_error_ = submit_errno_ = 0;
-  if (slots_.empty()) slots_ = std::vector<Slot>(kNumTransfers);
   for (Slot& slot : slots_) {
-    slot.buffer.resize(static_cast<std::size_t>(packet_bytes) * kPacketsPerTransfer);
-    if (!slot.transfer) slot.transfer.reset(libusb_alloc_transfer(kPacketsPerTransfer));
     if (!slot.transfer) return usb_error(LIBUSB_ERROR_NO_MEM, 0, "Kinect stream");
-  }
-  for (Slot& slot : slots_) {
     libusb_fill_iso_transfer(slot.transfer.get(), handle, endpoint, slot.buffer.data(), static_cast<int>(slot.buffer.size()),
-                             kPacketsPerTransfer, &IsoStream::on_transfer, this, 0);
+                             packets_per_transfer_, &IsoStream::on_transfer, this, 0);
     libusb_set_iso_packet_lengths(slot.transfer.get(), static_cast<unsigned>(packet_bytes));
     if (!submit(slot.transfer.get())) return usb_error(submit_error_, submit_errno_, "Kinect stream");
   }
   return Status::ok();
+}
+
+Status IsoStream::start(libusb_device_handle* handle, std::uint8_t endpoint, int packet_bytes) {
+  assert(num_in_flight_ == 0);
+  if (slots_.empty() || lacks_memory()) allocate(lacks_memory() ? kShortTransfer : kLongTransfer, packet_bytes);
+  Status status = submit_all(handle, endpoint, packet_bytes);
+  if (status || !lacks_memory() || packets_per_transfer_ == kShortTransfer || !stop(kDrainPatience)) return status;
+  allocate(kShortTransfer, packet_bytes);
+  return submit_all(handle, endpoint, packet_bytes);
 }
 
 bool IsoStream::stop(std::chrono::milliseconds patience) {

@@ -26,8 +26,11 @@ class IsoStream {
   IsoStream(const IsoStream&) = delete;
   IsoStream& operator=(const IsoStream&) = delete;
 
-  /// 16 transfers of 16 packets: 32 ms in flight, and buffers of 30 KB, which the kernel still finds when memory is fragmented.
-  static constexpr int kNumTransfers = 16, kPacketsPerTransfer = 16;
+  /// 40 ms in flight. Long transfers wake the host half as often; their buffers of 61 KB are more than a kernel whose memory is
+  /// fragmented may find, then they are halved.
+  static constexpr int kPacketsInFlight = 320;
+  static constexpr int kLongTransfer = 32, kShortTransfer = 16;  ///< packets
+  static constexpr std::chrono::milliseconds kDrainPatience{1000};
   static constexpr std::int64_t kPacketIntervalNs = 125'000;  ///< a micro-frame of USB 2.0
 
   [[nodiscard]] Status start(libusb_device_handle* handle, std::uint8_t endpoint, int packet_bytes);
@@ -49,10 +52,14 @@ class IsoStream {
   void handle(libusb_transfer* transfer);
   void receive(libusb_transfer* transfer);
   [[nodiscard]] bool submit(libusb_transfer* transfer);
+  [[nodiscard]] bool lacks_memory() const;
+  void allocate(int packets_per_transfer, int packet_bytes);
+  [[nodiscard]] Status submit_all(libusb_device_handle* handle, std::uint8_t endpoint, int packet_bytes);
 
   Stream stream_;
   KinectReceiver* receiver_;
   std::vector<Slot> slots_;
+  int packets_per_transfer_ = kLongTransfer;
   std::atomic<bool> is_stopping_{false};
   std::atomic<int> num_in_flight_{0}, submit_error_{0}, submit_errno_{0};
 };

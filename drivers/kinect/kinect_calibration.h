@@ -17,10 +17,10 @@ inline constexpr double kColorDistanceCm = 2.4;
 
 /// Geometry of the reference plane against which disparities are measured.
 struct ZeroPlane {
-  double emitter_distance_cm = 7.5;    ///< infrared camera to projector
+  double emitter_distance_cm = 7.5;             ///< infrared camera to projector
   double color_distance_cm = kColorDistanceCm;  ///< infrared camera to colour camera
-  double reference_distance_cm = 120;  ///< of the plane from the infrared camera
-  double pixel_size_cm = 0.1042;       ///< on that plane, of a pixel of the sensor, which is 1280 pixels wide
+  double reference_distance_cm = 120;           ///< of the plane from the infrared camera
+  double pixel_size_cm = 0.1042;                ///< on that plane, of a pixel of the sensor, which is 1280 pixels wide
   [[nodiscard]] bool is_plausible() const;
   /// Of the depth image, 640 pixels wide.
   [[nodiscard]] double focal_px() const { return reference_distance_cm / (2 * pixel_size_cm); }

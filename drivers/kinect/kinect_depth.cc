@@ -17,7 +17,8 @@ constexpr double kMmPerCm = 10;
 double triangulated_mm(int raw, const ZeroPlane& plane, int const_shift) {
   const double disparity_px = (raw - kQuartersPerPixel * const_shift) / kQuartersPerPixel - kPixelOffset;
   const double shift_cm = disparity_px * plane.pixel_size_cm;
-  return kMmPerCm * (shift_cm * plane.reference_distance_cm / (plane.emitter_distance_cm - shift_cm) + plane.reference_distance_cm);
+  return kMmPerCm *
+         (shift_cm * plane.reference_distance_cm / (plane.emitter_distance_cm - shift_cm) + plane.reference_distance_cm);
 }
 
 double public_model_mm(int raw) { return 1000.0 / (3.3309495161 - 0.0030711016 * raw); }

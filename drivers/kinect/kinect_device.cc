@@ -68,8 +68,8 @@ Status KinectDevice::start_transfers(bool with_depth) {
 }
 
 void KinectDevice::stop_transfers() {
-  static_cast<void>(color_.stop(kDrainPatience));
-  static_cast<void>(depth_.stop(kDrainPatience));
+  static_cast<void>(color_.stop(IsoStream::kDrainPatience));
+  static_cast<void>(depth_.stop(IsoStream::kDrainPatience));
 }
 
 Status KinectDevice::transfer_problem() const {

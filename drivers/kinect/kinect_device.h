@@ -44,7 +44,6 @@ class KinectDevice final : public ControlTransport {
 
  private:
   static constexpr unsigned kControlTimeoutMs = 500;
-  static constexpr std::chrono::milliseconds kDrainPatience{1000};
 
   KinectDevice(UsbContext context, OpenCamera camera, const StreamSetting& setting, KinectReceiver* receiver);
   [[nodiscard]] Status claim();

@@ -154,10 +154,8 @@ Status usb_error(int code, int system_error, const std::string& what) {
     case LIBUSB_ERROR_NO_DEVICE:
     case LIBUSB_ERROR_NOT_FOUND: return {ErrorCode::kUnavailable, what + ": the device is gone"};
     case LIBUSB_ERROR_ACCESS:
-      return {
-          ErrorCode::kIo,
-          what +
-              ": no permission; install the udev rule 60-camloc.rules (package camloc), or join the group plugdev"};
+      return {ErrorCode::kIo,
+              what + ": no permission; install the udev rule 60-camloc.rules (package camloc), or join the group plugdev"};
     case LIBUSB_ERROR_BUSY: return {ErrorCode::kUnavailable, what + ": another program is using it"};
     case LIBUSB_ERROR_TIMEOUT: return {ErrorCode::kTimeout, what + ": the device does not answer"};
     default: break;
