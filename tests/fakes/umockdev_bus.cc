@@ -3,7 +3,9 @@
 #include "tests/fakes/umockdev_bus.h"
 
 #include <dirent.h>
+#include <fcntl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <umockdev.h>
 #include <unistd.h>
@@ -27,29 +29,36 @@ struct Port {
   std::shared_ptr<ReadyFifo> fifo;
 };
 
-/// The process at the other end of this process's newest unused connection for `device_file`. umockdev does not tell whose ioctl it
-/// hands over, but each open file has a connection of its own, whose local name ends with the device file's.
+/// The other end of one of this process's connections.
+struct Peer {
+  pid_t pid = 0;
+  UniqueFd connection;  ///< a duplicate, which hangs up when the client closes its file or dies
+};
+
+/// Finds the connection of a client that has just opened `device_file`. umockdev tells neither whose ioctl it hands over nor reliably
+/// that a client went, but each open file has a connection of its own, whose local name ends with the device file's.
 class PeerFinder {
  public:
-  [[nodiscard]] pid_t take(const void* key, const std::string& device_file) {
+  [[nodiscard]] Peer take(const std::string& device_file) {
+    Peer newest;
+    std::set<ino_t> present;
     DIR* const folder = ::opendir("/proc/self/fd");
-    if (folder == nullptr) return 0;
-    pid_t pid = 0;
+    if (folder == nullptr) return newest;
     while (const dirent* const entry = ::readdir(folder)) {
       const int fd = std::atoi(entry->d_name);
-      const pid_t peer = peer_of(fd, device_file);
-      if (peer == 0 || taken_.contains(fd)) continue;
-      pid = peer;
-      taken_.insert(fd);
-      fd_of_[key] = fd;
-      break;
+      const pid_t pid = peer_of(fd, device_file);
+      struct stat info {};
+      if (pid == 0 || ::fstat(fd, &info) != 0) continue;
+      present.insert(info.st_ino);
+      if (taken_.contains({device_file, info.st_ino})) continue;
+      newest = {pid, UniqueFd(::fcntl(fd, F_DUPFD_CLOEXEC, 0))};
     }
     ::closedir(folder);
-    return pid;
-  }
-  void forget(const void* key) {
-    taken_.erase(fd_of_[key]);
-    fd_of_.erase(key);
+    // Forget those that are gone: their numbers come again.
+    std::erase_if(taken_, [&](const auto& known) { return known.first == device_file && !present.contains(known.second); });
+    struct stat info {};
+    if (newest.pid != 0 && ::fstat(newest.connection.get(), &info) == 0) taken_.insert({device_file, info.st_ino});
+    return newest;
   }
 
  private:
@@ -68,8 +77,7 @@ class PeerFinder {
     return peer.pid;
   }
 
-  std::set<int> taken_;
-  std::map<const void*, int> fd_of_;
+  std::set<std::pair<std::string, ino_t>> taken_;
 };
 
 PeerFinder& peers() {
@@ -145,20 +153,14 @@ G_DEFINE_TYPE(CamlocUsbHandler, camloc_usb_handler, UMOCKDEV_TYPE_IOCTL_BASE)
 
 namespace {
 
-void on_connection_change(GObject* object, GParamSpec* /*spec*/, gpointer data) {
-  auto* const client = reinterpret_cast<UMockdevIoctlClient*>(object);
-  if (umockdev_ioctl_client_get_connected(client) != 0) return;
-  static_cast<camloc::fakes::UsbfsHost*>(data)->close_session(client);
-  camloc::fakes::peers().forget(client);
+void on_connected(UMockdevIoctlBase* base, UMockdevIoctlClient* client) {
+  const camloc::fakes::Port& port = *reinterpret_cast<CamlocUsbHandler*>(base)->port;
+  camloc::fakes::Peer peer = camloc::fakes::peers().take(port.device_file);
+  port.host->open_session(client, port.device, peer.pid, std::move(peer.connection), [fifo = port.fifo](bool is_ready) { fifo->set_ready(is_ready); });
 }
 
 gboolean handle_ioctl(UMockdevIoctlBase* base, UMockdevIoctlClient* client) {
   const camloc::fakes::Port& port = *reinterpret_cast<CamlocUsbHandler*>(base)->port;
-  if (!port.host->has_session(client)) {
-    const pid_t pid = camloc::fakes::peers().take(client, port.device_file);
-    port.host->open_session(client, port.device, pid, [fifo = port.fifo](bool is_ready) { fifo->set_ready(is_ready); });
-    g_signal_connect(client, "notify::connected", G_CALLBACK(on_connection_change), port.host);
-  }
   guint8* bytes = nullptr;
   gint size = 0;
   umockdev_ioctl_data_retrieve(umockdev_ioctl_client_get_arg(client), &bytes, &size);
@@ -172,7 +174,10 @@ gboolean handle_ioctl(UMockdevIoctlBase* base, UMockdevIoctlClient* client) {
 
 }  // namespace
 
-static void camloc_usb_handler_class_init(CamlocUsbHandlerClass* type) { type->parent.handle_ioctl = handle_ioctl; }
+static void camloc_usb_handler_class_init(CamlocUsbHandlerClass* type) {
+  type->parent.handle_ioctl = handle_ioctl;
+  type->parent.client_connected = on_connected;
+}
 static void camloc_usb_handler_init(CamlocUsbHandler* handler) { handler->port = nullptr; }
 
 namespace camloc::fakes {

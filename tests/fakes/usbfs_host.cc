@@ -4,6 +4,8 @@
 // Time, queues and sessions. What single ioctls do is in usbfs_ioctls.cc.
 #include "tests/fakes/usbfs_host.h"
 
+#include <poll.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
@@ -23,7 +25,7 @@ std::int64_t monotonic_ns() {
 }  // namespace
 
 UsbfsHost::UsbfsHost(KinectRig* rig, BusPace pace, bool has_kernel_driver)
-    : rig_(rig), pace_(pace), is_driver_bound_(has_kernel_driver), origin_ns_(monotonic_ns()) {
+    : rig_(rig), pace_(pace), has_driver_(has_kernel_driver), is_driver_bound_(has_kernel_driver), origin_ns_(monotonic_ns()) {
   rig_->set_extra_counts([this] { return counts(); });
   thread_ = std::thread([this] { run(); });
 }
@@ -38,9 +40,10 @@ UsbfsHost::~UsbfsHost() {
   rig_->set_extra_counts(nullptr);
 }
 
-void UsbfsHost::open_session(const void* key, UsbDeviceId device, pid_t pid, ReadySink ready) {
+void UsbfsHost::open_session(const void* key, UsbDeviceId device, pid_t pid, UniqueFd connection, ReadySink ready) {
   const std::lock_guard lock(mutex_);
-  Session& session = sessions_[key];
+  Session& session = sessions_[key] = Session{};
+  session.connection = std::move(connection);
   session.device = device;
   session.pid = pid;
   session.ready = std::move(ready);
@@ -48,14 +51,11 @@ void UsbfsHost::open_session(const void* key, UsbDeviceId device, pid_t pid, Rea
   ++num_sessions_;
 }
 
-bool UsbfsHost::has_session(const void* key) {
-  const std::lock_guard lock(mutex_);
-  return sessions_.contains(key);
-}
-
-void UsbfsHost::close_session(const void* key) {
-  const std::lock_guard lock(mutex_);
-  sessions_.erase(key);
+void UsbfsHost::close_dead_sessions() {
+  std::erase_if(sessions_, [](const auto& entry) {
+    pollfd state{entry.second.connection.get(), POLLRDHUP, 0};
+    return !entry.second.connection.is_open() || ::poll(&state, 1, 0) > 0;
+  });
 }
 
 void UsbfsHost::disconnect() {
@@ -94,6 +94,10 @@ void UsbfsHost::run() {
   while (!is_stopping_) {
     advance();
     const std::int64_t now = monotonic_ns();
+    if (now >= next_check_ns_) {
+      close_dead_sessions();
+      next_check_ns_ = now + kIdleNs;
+    }
     const std::int64_t due = next_due_ns() + origin_ns_ + held_ns_;
     const std::int64_t wake = std::min(std::max(due, now + kTickNs), now + kIdleNs);
     changed_.wait_until(lock, std::chrono::steady_clock::time_point(std::chrono::nanoseconds(wake)));

@@ -44,11 +44,9 @@ class UsbfsHost {
   UsbfsHost(const UsbfsHost&) = delete;
   UsbfsHost& operator=(const UsbfsHost&) = delete;
 
-  /// Somebody opened the device. `pid` is whose memory the arguments point into.
-  void open_session(const void* key, UsbDeviceId device, pid_t pid, ReadySink ready);
-  [[nodiscard]] bool has_session(const void* key);
-  /// The file was closed, or its process ended.
-  void close_session(const void* key);
+  /// Somebody opened the device. `pid` is whose memory the arguments point into; when `connection` hangs up, the file was closed or
+  /// its process ended.
+  void open_session(const void* key, UsbDeviceId device, pid_t pid, UniqueFd connection, ReadySink ready);
   [[nodiscard]] IoctlResult ioctl(const void* key, unsigned long request, std::uint64_t argument);
 
   /// Ends what all open files wait for, with ESHUTDOWN; from then on they get ENODEV, and only new ones reach the device.
@@ -76,6 +74,7 @@ class UsbfsHost {
   struct Session {
     UsbDeviceId device = UsbDeviceId::kCamera;
     pid_t pid = 0;
+    UniqueFd connection;
     ReadySink ready;
     bool is_gone = false;              ///< its device was unplugged
     bool has_claimed = false;
@@ -89,6 +88,7 @@ class UsbfsHost {
   };
 
   void run();
+  void close_dead_sessions();
   void advance();
   void carry(StreamId stream, std::int64_t until_ns);
   [[nodiscard]] std::int64_t held_target(std::int64_t target_ns);
@@ -112,12 +112,14 @@ class UsbfsHost {
 
   KinectRig* rig_;
   BusPace pace_;
+  const bool has_driver_;
   bool is_driver_bound_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   bool is_stopping_ = false;
   std::map<const void*, Session> sessions_;
   std::array<Endpoint, 2> endpoints_;
+  std::int64_t next_check_ns_ = 0;     ///< for dead sessions, CLOCK_MONOTONIC
   std::int64_t origin_ns_;             ///< CLOCK_MONOTONIC of bus time 0
   std::int64_t held_ns_ = 0;
   std::int64_t bus_ns_ = 0;

@@ -89,10 +89,18 @@ IoctlResult UsbfsHost::driver_ioctl(Session* session, std::uint64_t argument) {
   if (!read_memory(session->pid, argument, &command, sizeof command)) return failed(EFAULT);
   const bool is_disconnect = command.ioctl_code == static_cast<int>(USBDEVFS_DISCONNECT);
   if (!is_disconnect && command.ioctl_code != static_cast<int>(USBDEVFS_CONNECT)) return failed(ENOTTY);
-  if (session->device != UsbDeviceId::kCamera || is_driver_bound_ != is_disconnect) return is_disconnect ? failed(ENODATA) : failed(EBUSY);
-  is_driver_bound_ = !is_disconnect;
-  ++(is_disconnect ? num_detached_ : num_attached_);
-  return {is_disconnect ? 0 : 1, 0};
+  const bool has_driver = has_driver_ && session->device == UsbDeviceId::kCamera;
+  if (is_disconnect && !(has_driver && is_driver_bound_)) return failed(ENODATA);
+  if (is_disconnect) {
+    is_driver_bound_ = false;
+    ++num_detached_;
+    return {};
+  }
+  if (session->has_claimed || is_driver_bound_) return failed(EBUSY);
+  if (!has_driver) return {};  // no driver took the interface
+  is_driver_bound_ = true;
+  ++num_attached_;
+  return {1, 0};
 }
 
 IoctlResult UsbfsHost::disconnect_claim(Session* session) {
