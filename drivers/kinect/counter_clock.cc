@@ -29,7 +29,9 @@ std::int64_t CounterClock::unwrapped_ns(std::uint32_t stamp, std::int64_t arriva
 bool CounterClock::has_jumped(std::int64_t device_ns, std::int64_t arrival_ns) {
   const std::int64_t delay_ns = arrival_ns - device_ns - floor_ns_;
   num_late_ = delay_ns > kMaxLateNs ? num_late_ + 1 : 0;
-  return delay_ns < -kMaxEarlyNs || num_late_ >= kLateRun;
+  const bool runs_back = device_ns < last_device_ns_;
+  last_device_ns_ = device_ns;
+  return runs_back || delay_ns < -kMaxEarlyNs || num_late_ >= kLateRun;
 }
 
 std::int64_t CounterClock::host_time_ns(std::uint32_t stamp, std::int64_t arrival_ns) {
@@ -38,6 +40,7 @@ std::int64_t CounterClock::host_time_ns(std::uint32_t stamp, std::int64_t arriva
     last_stamp_ = stamp;
     last_arrival_ns_ = arrival_ns;
     ticks_ = 0;
+    last_device_ns_ = 0;
     floor_ns_ = arrival_ns;
   }
   const std::int64_t device_ns = unwrapped_ns(stamp, arrival_ns);

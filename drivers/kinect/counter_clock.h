@@ -44,6 +44,7 @@ class CounterClock {
   std::int64_t last_arrival_ns_ = 0;
   std::int64_t ticks_ = 0;     ///< unwrapped, since the start
   std::int64_t floor_ns_ = 0;  ///< estimate of arrival minus device time for data without delay, from the last result
+  std::int64_t last_device_ns_ = 0;
   int num_late_ = 0;
   std::uint64_t num_jumps_ = 0;
 };

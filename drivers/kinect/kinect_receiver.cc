@@ -45,7 +45,7 @@ void KinectReceiver::publish(Stream stream) {
     }
     next = c.free[--c.num_free];
     c.waiting[c.num_waiting++] = c.writing;
-    ++num_published_;
+    ++num_events_;
   }
   c.write_to(next);
   changed_.notify_one();
@@ -54,10 +54,16 @@ void KinectReceiver::publish(Stream stream) {
 void KinectReceiver::on_transfer(Stream stream, std::size_t num_errors, std::int64_t now_ns) {
   const Channel& c = channel(stream);
   const auto index = static_cast<std::size_t>(stream);
-  const std::lock_guard lock(mutex_);
-  report_.counts[index] = c.assembler.counts();
-  report_.transport_errors[index] += num_errors;
-  if (c.packet_ns != 0) report_.last_packet_ns[index] = std::min(c.packet_ns, now_ns);
+  bool is_news = false;
+  {
+    const std::lock_guard lock(mutex_);
+    is_news = c.assembler.counts().frames_incomplete != report_.counts[index].frames_incomplete;
+    num_events_ += is_news ? 1 : 0;
+    report_.counts[index] = c.assembler.counts();
+    report_.transport_errors[index] += num_errors;
+    if (c.packet_ns != 0) report_.last_packet_ns[index] = std::min(c.packet_ns, now_ns);
+  }
+  if (is_news) changed_.notify_one();
 }
 
 void KinectReceiver::on_gone() {
@@ -71,7 +77,7 @@ void KinectReceiver::on_gone() {
 RawFrame* KinectReceiver::take(Stream stream) {
   Channel& c = channel(stream);
   const std::lock_guard lock(mutex_);
-  num_seen_ = num_published_;
+  num_seen_ = num_events_;
   if (c.num_waiting == 0) return nullptr;
   RawFrame* const frame = c.waiting[0];
   std::move(c.waiting.begin() + 1, c.waiting.begin() + static_cast<std::ptrdiff_t>(c.num_waiting), c.waiting.begin());
@@ -88,7 +94,7 @@ void KinectReceiver::release(Stream stream, RawFrame* frame) {
 
 void KinectReceiver::wait_until(std::chrono::steady_clock::time_point deadline) {
   std::unique_lock lock(mutex_);
-  changed_.wait_until(lock, deadline, [this] { return report_.is_gone || num_published_ != num_seen_; });
+  changed_.wait_until(lock, deadline, [this] { return report_.is_gone || num_events_ != num_seen_; });
 }
 
 ReceiverReport KinectReceiver::report() const {
@@ -98,12 +104,14 @@ ReceiverReport KinectReceiver::report() const {
 
 void KinectReceiver::restart() {
   const std::lock_guard lock(mutex_);
-  for (const auto& c : channels_) {
-    c->assembler.resynchronize();
-    while (c->num_waiting > 0) c->free[c->num_free++] = c->waiting[--c->num_waiting];
+  for (std::size_t i = 0; i < kNumStreams; ++i) {
+    Channel& c = *channels_[i];
+    c.assembler.resynchronize();
+    c.packet_ns = 0;
+    while (c.num_waiting > 0) c.free[c.num_free++] = c.waiting[--c.num_waiting];
+    report_.counts[i] = c.assembler.counts();
   }
   report_.last_packet_ns = {};
-  for (const auto& c : channels_) c->packet_ns = 0;
 }
 
 }  // namespace camloc::kinect

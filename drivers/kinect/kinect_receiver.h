@@ -51,7 +51,7 @@ class KinectReceiver {
   /// The oldest frame that is waiting, or nullptr. It belongs to the caller until release().
   [[nodiscard]] RawFrame* take(Stream stream);
   void release(Stream stream, RawFrame* frame);
-  /// Until a frame is published after the last take() that found none, the device is gone, or the time is over.
+  /// Until a frame was completed or thrown away since the last take(), the device is gone, or the time is over.
   void wait_until(std::chrono::steady_clock::time_point deadline);
   [[nodiscard]] ReceiverReport report() const;
   /// Forgets everything under way, keeps the counts; only while no packet can come.
@@ -73,10 +73,10 @@ class KinectReceiver {
   [[nodiscard]] Channel& channel(Stream stream) { return *channels_[static_cast<std::size_t>(stream)]; }
 
   std::array<std::unique_ptr<Channel>, kNumStreams> channels_;
-  mutable std::mutex mutex_;  // of free, waiting, report_ and num_published_; held for moving pointers and counts only
+  mutable std::mutex mutex_;  // of free, waiting, report_ and num_events_; held for moving pointers and counts only
   std::condition_variable changed_;
   ReceiverReport report_;
-  std::uint64_t num_published_ = 0, num_seen_ = 0;
+  std::uint64_t num_events_ = 0, num_seen_ = 0;
 };
 
 }  // namespace camloc::kinect

@@ -79,6 +79,7 @@ class KinectSource final : public FrameSource {
   void deliver(bool with_depth, FrameBuffer* frame);
   void convert_depth_image(FrameBuffer* frame);
   void show(Led led);
+  [[nodiscard]] Status check_incomplete();
   [[nodiscard]] Status stalled(milliseconds timeout);
 
   KinectOptions kinect_options_;
@@ -93,7 +94,7 @@ class KinectSource final : public FrameSource {
   std::unique_ptr<KinectMotor> motor_;  // after device_, whose thread handles its events
   RawFrame* color_ = nullptr;           // taken from the receiver, not yet delivered
   RawFrame* depth_ = nullptr;
-  std::uint64_t sequence_ = 0, num_unpaired_ = 0;
+  std::uint64_t sequence_ = 0, num_unpaired_ = 0, num_incomplete_ = 0;
   bool is_reset_ = false;
 };
 
@@ -216,6 +217,7 @@ Status KinectSource::next(FrameBuffer* frame, milliseconds timeout) {
         give_back(Stream::kDepth, &depth_);
         break;
       case Pairing::kWait:
+        if (Status status = check_incomplete(); !status) return status;
         if (now >= deadline) return stalled(timeout);
         receiver_.wait_until(color_ ? std::min(deadline, time_of(color_->complete_ns) + kDepthPatience + milliseconds(1))
                                     : deadline);
@@ -254,6 +256,15 @@ void KinectSource::convert_depth_image(FrameBuffer* frame) {
   }
 }
 
+// Tells a camera whose packets get lost from one that stands still.
+Status KinectSource::check_incomplete() {
+  const PacketCounts counts = receiver_.report().counts[static_cast<std::size_t>(Stream::kColor)];
+  if (counts.frames_incomplete == num_incomplete_) return Status::ok();
+  num_incomplete_ = counts.frames_incomplete;
+  return {ErrorCode::kCorrupt, info_.description + ": packets of a colour image were lost (" + std::to_string(counts.lost) +
+                                   " so far); is the USB controller busy with other devices?"};
+}
+
 Status KinectSource::stalled(milliseconds timeout) {
   show(Led::kBlinkRedYellow);
   if (Status problem = device_->transfer_problem(); !problem)
@@ -287,6 +298,7 @@ Status KinectSource::restart() {
   stop_streams();
   receiver_.restart();
   clock_.reset();
+  num_incomplete_ = receiver_.report().counts[static_cast<std::size_t>(Stream::kColor)].frames_incomplete;
   if (Status status = start_streams(); !status) return {ErrorCode::kUnavailable, status.message()};
   return Status::ok();
 }
