@@ -2,12 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // See openni2_source.h. The library's threads fill its own buffers; this one waits, in short slices so that a device that
-// went away is noticed, converts what came at once and keeps the newest image and depth until they make a pair.
+// went away is noticed, converts what came at once and keeps the newest images and depths until two of one time make a pair.
 #include "drivers/openni2/openni2_source.h"
 
 #include <time.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <utility>
 
@@ -30,18 +31,49 @@ std::int64_t monotonic_ns() {
   return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
-/// The newest frame of a stream, until it is paired.
-struct Arrival {
+/// A frame of one stream, until it is paired.
+struct Entry {
   bool is_fresh = false;
+  std::uint64_t sequence = 0;
   std::int64_t device_ns = 0;
   std::int64_t arrival_ns = 0;
   std::int64_t stamp_ns = 0;
+  Image<std::uint8_t> gray;
+  Image<Bgr> color;
+  Image<std::uint16_t> depth;
 };
+
+/// The newest frames of a stream: three, as one stream may come two frames later than the other.
+using Entries = std::array<Entry, 3>;
+
+/// A free place, or that of the oldest frame.
+Entry* place_in(Entries* entries) {
+  const auto is_older = [](const Entry& a, const Entry& b) { return a.is_fresh != b.is_fresh ? !a.is_fresh : a.arrival_ns < b.arrival_ns; };
+  return &*std::min_element(entries->begin(), entries->end(), is_older);
+}
+
+/// Frees the places of all frames that came up to `last`; how many there were besides `last`.
+std::uint64_t drop_through(Entries* entries, const Entry& last) {
+  std::uint64_t count = 0;
+  for (Entry& entry : *entries) {
+    if (!entry.is_fresh || entry.arrival_ns > last.arrival_ns) continue;
+    entry.is_fresh = false;
+    count += &entry != &last;
+  }
+  return count;
+}
 
 class Openni2Source final : public FrameSource {
  public:
   Openni2Source(std::unique_ptr<Device> device, FrameSourceInfo info, bool wants_color)
-      : device_(std::move(device)), info_(std::move(info)), wants_color_(wants_color), max_pair_gap_ns_(600'000'000 / device_->image().mode.fps) {}
+      : device_(std::move(device)), info_(std::move(info)), wants_color_(wants_color), max_pair_gap_ns_(600'000'000 / device_->image().mode.fps) {
+    // All memory now, none per frame.
+    for (Entry& entry : images_) {
+      entry.gray.resize(info_.color_width, info_.color_height);
+      if (wants_color_) entry.color.resize(info_.color_width, info_.color_height);
+    }
+    for (Entry& entry : depths_) entry.depth.resize(info_.depth_width, info_.depth_height);
+  }
 
   [[nodiscard]] const FrameSourceInfo& info() const override { return info_; }
 
@@ -53,7 +85,7 @@ class Openni2Source final : public FrameSource {
       const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
       Result<bool> has_read = read_one(std::clamp(left, std::chrono::milliseconds(0), kWaitSlice));
       if (!has_read) return has_read.status();
-      if (*has_read && take_pair(frame)) return Status::ok();
+      if (*has_read && give_pair(frame)) return Status::ok();
       if (left <= std::chrono::milliseconds(0)) break;
     }
     return {ErrorCode::kTimeout, "no frame from OpenNI2 device " + device_->uri()};
@@ -72,7 +104,9 @@ class Openni2Source final : public FrameSource {
     device_->stop();
     // It said it would deliver both in step, and delivered nothing.
     if (!has_delivered_) device_->disable_sync();
-    image_ = depth_ = Arrival();
+    for (Entry& entry : images_) entry.is_fresh = false;
+    for (Entry& entry : depths_) entry.is_fresh = false;
+    newest_image_ = newest_depth_ = nullptr;
     image_clock_.reset();
     depth_clock_.reset();
     has_compared_clocks_ = false;
@@ -93,7 +127,7 @@ class Openni2Source final : public FrameSource {
     if (waited != ONI_STATUS_OK || index < 0 || index > 1) return library_error("waiting for a frame failed");
     OniFrame* raw = nullptr;
     if (api.stream_read_frame(streams[index], &raw) != ONI_STATUS_OK || raw == nullptr) return library_error("reading a frame failed");
-    const Status status = keep(*raw, index == 0 ? device_->image() : device_->depth(), index == 0 ? &image_ : &depth_);
+    const Status status = keep(*raw, index == 0);
     api.frame_release(raw);
     if (status) return true;
     ++num_incomplete_;
@@ -104,66 +138,84 @@ class Openni2Source final : public FrameSource {
     return {ErrorCode::kUnavailable, "OpenNI2 device " + device_->uri() + ": " + what + " (" + device_->session().last_error() + ")"};
   }
 
-  Status keep(const OniFrame& raw, const Stream& stream, Arrival* arrival) {
+  Status keep(const OniFrame& raw, bool is_image) {
     constexpr std::uint64_t kMaxStampUs = 4'000'000'000'000'000;
-    const bool is_image = arrival == &image_;
+    const std::int64_t arrival_ns = monotonic_ns();
+    const Stream& stream = is_image ? device_->image() : device_->depth();
     if (is_image) ++sequence_;
-    if (arrival->is_fresh) ++num_unpaired_;
-    arrival->is_fresh = false;
     const auto bad = [&](const std::string& why) { return Status(ErrorCode::kCorrupt, std::string(is_image ? "image" : "depth") + " frame " + std::to_string(raw.frameIndex) + ": " + why); };
     if (raw.data == nullptr || raw.dataSize <= 0 || raw.stride <= 0) return bad("empty");
     if (raw.width != stream.mode.width || raw.height != stream.mode.height || raw.croppingEnabled != FALSE || raw.videoMode.pixelFormat != stream.mode.oni_pixel_format) {
       return bad(std::to_string(raw.width) + "x" + std::to_string(raw.height) + " in format " + std::to_string(raw.videoMode.pixelFormat) + " instead of " + describe(stream.mode));
     }
     if (raw.timestamp > kMaxStampUs) return bad("stamp out of range");
-    const std::int64_t device_ns = static_cast<std::int64_t>(raw.timestamp) * 1000;
-    const std::int64_t arrival_ns = monotonic_ns();
     const RawImage pixels{{static_cast<const std::uint8_t*>(raw.data), static_cast<std::size_t>(raw.dataSize)}, raw.width, raw.height,
                           static_cast<std::size_t>(raw.stride), stream.pixels.layout, stream.is_mirrored};
-    Status status = is_image ? to_gray(pixels, &kept_.gray) : to_depth(pixels, &kept_.depth);
-    if (status && is_image && wants_color_) status = to_bgr(pixels, &kept_.color);
+    Entry* entry = place_in(is_image ? &images_ : &depths_);
+    if (std::exchange(entry->is_fresh, false)) ++num_unpaired_;
+    Status status = is_image ? to_gray(pixels, &entry->gray) : to_depth(pixels, &entry->depth);
+    if (status && is_image && wants_color_) status = to_bgr(pixels, &entry->color);
     if (!status) return bad(status.message());
-    *arrival = {true, device_ns, arrival_ns, (is_image ? image_clock_ : depth_clock_).to_monotonic(device_ns, arrival_ns)};
+    entry->is_fresh = true;
+    entry->sequence = sequence_;
+    entry->device_ns = static_cast<std::int64_t>(raw.timestamp) * 1000;
+    entry->arrival_ns = arrival_ns;
+    entry->stamp_ns = (is_image ? image_clock_ : depth_clock_).to_monotonic(entry->device_ns, arrival_ns);
+    (is_image ? newest_image_ : newest_depth_) = entry;
     return Status::ok();
   }
 
-  /// Gives the kept image away with its depth, if they are there and of one time.
-  bool take_pair(FrameBuffer* frame) {
-    if (!image_.is_fresh || (device_->has_depth() && !depth_.is_fresh)) return false;
-    if (device_->has_depth() && !is_pair()) return false;
-    kept_.sequence = sequence_;
-    kept_.stamp_ns = image_.stamp_ns;
-    image_.is_fresh = depth_.is_fresh = false;
-    has_delivered_ = true;
-    std::swap(*frame, kept_);
-    if (!device_->has_depth()) frame->depth.resize(0, 0);
+  /// Gives the two kept frames away that are nearest in time, if they are near enough, and forgets what is older.
+  bool give_pair(FrameBuffer* frame) {
+    Entry* image = newest_image_;
+    Entry* depth = nullptr;
+    if (device_->has_depth() && !find_pair(&image, &depth)) return false;
+    if (image == nullptr || !image->is_fresh) return false;
+    num_unpaired_ += drop_through(&images_, *image);
+    if (depth != nullptr) num_unpaired_ += drop_through(&depths_, *depth);
+    frame->sequence = image->sequence;
+    frame->stamp_ns = image->stamp_ns;
+    std::swap(frame->gray, image->gray);
+    if (wants_color_) std::swap(frame->color, image->color);
     if (!wants_color_) frame->color.resize(0, 0);
+    if (depth != nullptr) std::swap(frame->depth, depth->depth);
+    if (depth == nullptr) frame->depth.resize(0, 0);
+    has_delivered_ = true;
     return true;
   }
 
-  /// Drops the older of the two where they are too far apart.
-  bool is_pair() {
+  bool find_pair(Entry** image, Entry** depth) {
+    if (newest_image_ == nullptr || newest_depth_ == nullptr) return false;
     if (!has_compared_clocks_) compare_clocks();
-    const std::int64_t gap_ns = has_shared_clock_ ? image_.device_ns - depth_.device_ns : image_.stamp_ns - depth_.stamp_ns;
-    if (std::llabs(gap_ns) <= max_pair_gap_ns_) return true;
-    (gap_ns < 0 ? image_ : depth_).is_fresh = false;
-    ++num_unpaired_;
-    return false;
+    std::int64_t best_gap_ns = max_pair_gap_ns_ + 1;
+    for (Entry& i : images_) {
+      for (Entry& d : depths_) {
+        if (!i.is_fresh || !d.is_fresh) continue;
+        const std::int64_t gap_ns = std::llabs(has_shared_clock_ ? i.device_ns - d.device_ns : i.stamp_ns - d.stamp_ns);
+        if (gap_ns >= best_gap_ns) continue;
+        best_gap_ns = gap_ns;
+        *image = &i;
+        *depth = &d;
+      }
+    }
+    return best_gap_ns <= max_pair_gap_ns_;
   }
 
   /// Most devices stamp both streams with one clock; some count each from its own start.
   void compare_clocks() {
     constexpr std::int64_t kSameClockNs = 500'000'000;
+    const std::int64_t apart_ns = (newest_image_->device_ns - newest_depth_->device_ns) - (newest_image_->arrival_ns - newest_depth_->arrival_ns);
     has_compared_clocks_ = true;
-    has_shared_clock_ = std::llabs((image_.device_ns - depth_.device_ns) - (image_.arrival_ns - depth_.arrival_ns)) < kSameClockNs;
+    has_shared_clock_ = std::llabs(apart_ns) < kSameClockNs;
   }
 
   std::unique_ptr<Device> device_;
   FrameSourceInfo info_;
   bool wants_color_;
   std::int64_t max_pair_gap_ns_;
-  FrameBuffer kept_;
-  Arrival image_, depth_;
+  Entries images_, depths_;
+  Entry* newest_image_ = nullptr;
+  Entry* newest_depth_ = nullptr;
   DeviceClock image_clock_, depth_clock_;
   bool has_compared_clocks_ = false;
   bool has_shared_clock_ = true;

@@ -22,6 +22,7 @@ struct Control {
   std::atomic<int> real_fps{30};          ///< how fast frames really come
   std::atomic<int> max_frames{0};         ///< per stream and start; 0: no end
   std::atomic<int> depth_delay_us{0};     ///< added to the stamps of depth
+  std::atomic<int> depth_latency_us{0};   ///< depth comes later by this, its stamps unchanged
   std::atomic<std::int64_t> stamp_zero_us{77'000'000};
   std::atomic<std::int64_t> depth_stamp_zero_us{0};  ///< added to the stamps of depth: a second clock
   std::atomic<bool> can_register{true};

@@ -120,7 +120,7 @@ class SyntheticStream final : public oni::driver::StreamBase {
 
   void run() {
     using Clock = std::chrono::steady_clock;
-    const Clock::time_point begin = Clock::now();
+    const Clock::time_point begin = Clock::now() + std::chrono::microseconds(sensor_ == ONI_SENSOR_DEPTH ? control().depth_latency_us.load() : 0);
     const auto interval = std::chrono::nanoseconds(1'000'000'000 / control().real_fps);
     const int max_frames = control().max_frames;
     for (int frame = 0; max_frames == 0 || frame < max_frames; ++frame) {

@@ -253,6 +253,16 @@ TEST_F(Openni2Live, PairsColourAndDepthByTime) {
   }
 }
 
+TEST_F(Openni2Live, PairsDepthThatComesTwoFramesLate) {
+  control().depth_latency_us = 60'000;
+  auto source = open("openni2://", true);
+  FrameBuffer frame;
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_TRUE(next(source.get(), &frame));
+    expect_depth(frame, number_of(frame));
+  }
+}
+
 TEST_F(Openni2Live, PairsStreamsThatCountFromTheirOwnZero) {
   control().depth_stamp_zero_us = 3'600'000'000;
   auto source = open("openni2://", true);
