@@ -15,8 +15,7 @@
 #include <optional>
 #include <utility>
 
-#include "drivers/v4l2/v4l2_controls.h"
-#include "drivers/v4l2/v4l2_settings.h"
+#include "drivers/v4l2/v4l2_opening.h"
 #include "drivers/v4l2/v4l2_stream.h"
 
 namespace camloc {
@@ -57,25 +56,16 @@ struct Channel {
   }
 };
 
-struct OpenedSource {
-  std::shared_ptr<V4l2Io> io;
-  std::unique_ptr<V4l2Stream> image, depth;
-  FrameSourceInfo info;
-  std::string usb_node;
-  V4l2Settings settings;
-  bool wants_color = false;
-};
-
 class V4l2Source final : public FrameSource {
  public:
-  explicit V4l2Source(OpenedSource opened)
+  explicit V4l2Source(V4l2Opened opened)
       : io_(std::move(opened.io)),
         image_{std::move(opened.image), {}},
         depth_{std::move(opened.depth), {}},
         info_(std::move(opened.info)),
         usb_node_(std::move(opened.usb_node)),
         settings_(std::move(opened.settings)),
-        gives_color_(opened.wants_color && image_.stream && image_.stream->layout().format->has_color) {
+        gives_color_(opened.gives_color) {
     describe();
   }
 
@@ -206,9 +196,9 @@ class V4l2Source final : public FrameSource {
   }
 
   Status convert(FrameBuffer* frame) {
-    frame->gray.resize(0, 0);
-    frame->depth.resize(0, 0);
-    frame->color.resize(0, 0);
+    if (!image_.stream) frame->gray.resize(0, 0);
+    if (!depth_.stream) frame->depth.resize(0, 0);
+    if (!gives_color_) frame->color.resize(0, 0);
     if (depth_.stream) convert_to_depth(depth_.stream->layout(), depth_.pending->planes, &frame->depth);
     if (!image_.stream) return Status::ok();
     const V4l2ImageLayout& layout = image_.stream->layout();
@@ -237,106 +227,13 @@ class V4l2Source final : public FrameSource {
   Image<std::uint8_t> scratch_;
 };
 
-/// The path of a node that may be named by its serial.
-Result<std::string> resolve_node(V4l2Io& io, const V4l2Folders& folders, const V4l2NodeSettings& node) {
-  constexpr std::string_view kSerial = "serial:";
-  if (!node.node.starts_with(kSerial)) return node.node;
-  return find_v4l2_node(io, folders, node.node.substr(kSerial.size()), node.wish.role);
-}
-
-Result<std::unique_ptr<V4l2Stream>> open_stream(V4l2Device device, const V4l2NodeSettings& node) {
-  const Result<V4l2Agreement> agreement = negotiate_v4l2(device, node.wish);
-  if (!agreement) return agreement.status();
-  if (Status status = set_v4l2_controls(device, node.controls); !status) return status;
-  return V4l2Stream::open(std::move(device), *agreement);
-}
-
-/// A node alone may turn out to give depth: by the format asked for, or because it offers nothing else.
-V4l2Role role_of_only_node(const V4l2Device& device, const V4l2Wish& wish) {
-  if (wish.fourcc) return find_v4l2_pixel_format(*wish.fourcc)->can_be_image ? V4l2Role::kImage : V4l2Role::kDepth;
-  bool gives_depth = false;
-  for (const V4l2FormatOffer& offer : device.offers()) {
-    const V4l2PixelFormat* format = find_v4l2_pixel_format(offer.fourcc);
-    if (format == nullptr) continue;
-    if (format->can_be_image) return V4l2Role::kImage;
-    gives_depth = gives_depth || format->can_be_depth;
-  }
-  return gives_depth ? V4l2Role::kDepth : V4l2Role::kImage;
-}
-
-Status no_node_named(const SourceUrl& url, V4l2Io& io, const V4l2Folders& folders) {
-  std::string there;
-  for (const V4l2DeviceInfo& node : list_v4l2_devices(io, folders)) there += (there.empty() ? "" : ", ") + node.path + " '" + node.name + "'";
-  return {ErrorCode::kInvalid, url.text + ": names no camera; expected v4l2:///dev/videoN or v4l2://serial:XXXX; there is " + (there.empty() ? "none" : there)};
-}
-
-class Opener {
- public:
-  Opener(std::shared_ptr<V4l2Io> io, const V4l2Folders& folders, const SourceUrl& url) : url_(url), folders_(folders) { opened_.io = std::move(io); }
-
-  Result<std::unique_ptr<FrameSource>> open(const FrameSourceOptions& options) {
-    Result<V4l2Settings> settings = parse_v4l2_settings(url_, options);
-    if (!settings) return settings.status();
-    opened_.settings = std::move(settings).value();
-    opened_.wants_color = options.wants_color;
-    if (Status status = open_streams(); !status) return status;
-    fill_info();
-    for (V4l2Stream* stream : {opened_.image.get(), opened_.depth.get()}) {
-      if (stream == nullptr) continue;
-      if (Status status = stream->start(); !status) return status;
-    }
-    return std::unique_ptr<FrameSource>(std::make_unique<V4l2Source>(std::move(opened_)));
-  }
-
- private:
-  Status open_streams() {
-    V4l2Settings& settings = opened_.settings;
-    if (settings.image.node.empty() && settings.depth.node.empty()) return no_node_named(url_, *opened_.io, folders_);
-    if (!settings.image.node.empty()) {
-      if (Status status = open_node(&settings.image); !status) return status;
-    }
-    if (settings.depth.node.empty()) return Status::ok();
-    return open_node(&settings.depth);
-  }
-
-  Status open_node(V4l2NodeSettings* node) {
-    const Result<std::string> path = resolve_node(*opened_.io, folders_, *node);
-    if (!path) return path.status();
-    Result<V4l2Device> device = V4l2Device::open(*opened_.io, *path);
-    if (!device) return device.status();
-    const V4l2DeviceInfo info = describe_v4l2_node(*path, folders_);
-    if (info.path == first_path_) return {ErrorCode::kInvalid, url_.text + ": image and depth are one node, which gives one stream"};
-    if (first_path_.empty()) {
-      first_path_ = info.path;
-      opened_.info.serial = info.serial;
-      opened_.usb_node = info.usb_node;
-    }
-    if (node->wish.role == V4l2Role::kImage && opened_.settings.depth.node.empty()) node->wish.role = role_of_only_node(*device, node->wish);
-    Result<std::unique_ptr<V4l2Stream>> stream = open_stream(std::move(device).value(), *node);
-    if (!stream) return stream.status();
-    (node->wish.role == V4l2Role::kImage ? opened_.image : opened_.depth) = std::move(stream).value();
-    return Status::ok();
-  }
-
-  void fill_info() {
-    FrameSourceInfo& info = opened_.info;
-    info.stamp_clock = StampClock::kMonotonic;
-    info.camera = opened_.settings.camera;
-    if (opened_.image) info.color_width = opened_.image->layout().width, info.color_height = opened_.image->layout().height;
-    if (opened_.depth) info.depth_width = opened_.depth->layout().width, info.depth_height = opened_.depth->layout().height;
-  }
-
-  const SourceUrl& url_;
-  const V4l2Folders& folders_;
-  OpenedSource opened_;
-  std::string first_path_;
-};
-
 }  // namespace
 
 Result<std::unique_ptr<FrameSource>> open_v4l2_source_on(std::shared_ptr<V4l2Io> io, const V4l2Folders& folders, const SourceUrl& url,
                                                          const FrameSourceOptions& options) {
-  return Opener(std::move(io), folders, url).open(options);
+  Result<V4l2Opened> opened = open_v4l2_nodes(std::move(io), folders, url, options);
+  if (!opened) return opened.status();
+  return std::unique_ptr<FrameSource>(std::make_unique<V4l2Source>(std::move(opened).value()));
 }
 
 Result<std::unique_ptr<FrameSource>> open_v4l2_source(const SourceUrl& url, const FrameSourceOptions& options) {

@@ -215,7 +215,7 @@ int FakeV4l2::fetch_buffer(State& state, v4l2_buffer* buffer) {
   if (!state.is_streaming) return -EINVAL;
   if (state.done.empty()) return -EAGAIN;
   const unsigned index = state.done.front();
-  state.done.pop_front();
+  state.done.erase(state.done.begin());
   const Buffer& done = state.buffers[index];
   buffer->index = state.node.faults.index.value_or(index);
   buffer->flags = done.flags;
@@ -296,7 +296,7 @@ void FakeV4l2::expose(State& state) {
   state.next_exposure_ns += std::llround(1e9 / (state.node.rate_hz > 0 ? state.node.rate_hz : 30));
   if (faults.is_stalled || state.queued.empty()) return;
   const unsigned index = state.queued.front();
-  state.queued.pop_front();
+  state.queued.erase(state.queued.begin());
   Buffer& buffer = state.buffers[index];
   for (unsigned plane = 0; plane < buffer.planes.size(); ++plane) {
     std::vector<std::uint8_t>& bytes = buffer.planes[plane];

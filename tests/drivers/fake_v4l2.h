@@ -8,7 +8,6 @@
 #include <linux/videodev2.h>
 
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <map>
 #include <optional>
@@ -104,7 +103,7 @@ class FakeV4l2 final : public V4l2Io {
   struct State {
     FakeNode node;
     std::vector<Buffer> buffers;
-    std::deque<unsigned> queued, done;
+    std::vector<unsigned> queued, done;  // vectors, so that nothing is allocated per frame
     bool is_streaming = false;
     std::int64_t next_exposure_ns = 0;
     std::uint64_t exposure = 0;

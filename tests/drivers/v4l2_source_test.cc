@@ -11,6 +11,7 @@
 
 #include "tests/drivers/fake_v4l2.h"
 #include "tests/drivers/test_folder.h"
+#include "tests/geometry/allocation_counter.h"
 
 namespace camloc {
 namespace {
@@ -109,6 +110,23 @@ TEST_F(V4l2Source, ColorTwiceAsFastAsDepth) {
     EXPECT_EQ(frame_.depth.at(0, 0), 1000 + i);
   }
   EXPECT_EQ(source_->health().frames_unpaired, 19U);
+}
+
+TEST_F(V4l2Source, NothingIsAllocatedPerFrame) {
+  if (!testing::can_count_allocations()) GTEST_SKIP() << "a sanitizer owns the allocator";
+  depth_.phase_ns = 5 * kNsPerMs;
+  for (const std::uint32_t fourcc : {V4L2_PIX_FMT_YUYV, V4L2_PIX_FMT_SGRBG8, V4L2_PIX_FMT_Y10BPACK}) {
+    color_.formats = {{fourcc, {{160, 120, {30}}}}};
+    ASSERT_TRUE(open("v4l2:///dev/video0?depth=/dev/video2&width=160&height=120", {.wants_color = true}));
+    for (int i = 0; i < 5; ++i) ASSERT_EQ(next(), ErrorCode::kOk);
+    const std::uint64_t before = testing::num_allocations();
+    int num_frames = 0;
+    for (int i = 0; i < 100; ++i) num_frames += source_->next(&frame_, milliseconds(100)).is_ok();
+    for (int i = 0; i < 100; ++i) num_frames += source_->next(&frame_, milliseconds(1)).is_ok();  // most of them in vain
+    EXPECT_EQ(testing::num_allocations(), before);
+    EXPECT_GT(num_frames, 100);
+    source_.reset();
+  }
 }
 
 TEST_F(V4l2Source, DepthAlone) {
