@@ -6,6 +6,7 @@
 
 #include <linux/videodev2.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -89,6 +90,12 @@ std::string size_text(const V4l2SizeRange& size) {
   return std::to_string(size.min_width) + "x" + std::to_string(size.min_height) + "-" + largest;
 }
 
+std::string sizes_text(const std::vector<V4l2SizeOffer>& sizes) {
+  std::string text;
+  for (const V4l2SizeOffer& offer : sizes) text += " " + size_text(offer.size) + rates_text(offer.rates);
+  return text;
+}
+
 }  // namespace
 
 bool V4l2SizeRange::contains(int width, int height) const {
@@ -169,14 +176,21 @@ std::vector<V4l2RateRange> V4l2Device::rate_offers(std::uint32_t fourcc, int wid
 
 std::string offers_line(const std::vector<V4l2FormatOffer>& offers) {
   if (offers.empty()) return "no format at all";
-  std::string line;
-  for (const V4l2FormatOffer& format : offers) {
-    if (line.size() > kMaxLine) return line + "; ...";
-    line += (line.empty() ? "" : "; ") + fourcc_name(format.fourcc);
-    for (const V4l2SizeOffer& offer : format.sizes) {
-      if (line.size() > kMaxLine) return line + " ...";
-      line += " " + size_text(offer.size) + rates_text(offer.rates);
+  // Most cameras have the same sizes in several formats.
+  std::vector<std::pair<std::string, std::string>> groups;  // formats, sizes
+  for (const V4l2FormatOffer& offer : offers) {
+    const std::string sizes = sizes_text(offer.sizes), name = fourcc_name(offer.fourcc);
+    const auto group = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.second == sizes; });
+    if (group == groups.end()) {
+      groups.emplace_back(name, sizes);
+    } else {
+      group->first += ", " + name;
     }
+  }
+  std::string line;
+  for (const auto& [names, sizes] : groups) {
+    if (line.size() + names.size() + sizes.size() > kMaxLine) return line + (line.empty() ? "" : "; ") + names + " and more";
+    line += (line.empty() ? "" : "; ") + names + sizes;
   }
   return line;
 }

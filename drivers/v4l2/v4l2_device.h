@@ -66,7 +66,7 @@ class V4l2Device {
   bool is_multiplanar_ = false;
 };
 
-/// "YUYV 640x480 (30 15 Hz) 320x240 (60 Hz); Z16 640x480 (30 Hz)", cut off where it gets too long to read.
+/// "YUYV, UYVY 640x480 (30 15 Hz) 320x240 (60 Hz); Z16 640x480 (30 Hz)", cut off where it gets too long to read.
 [[nodiscard]] std::string offers_line(const std::vector<V4l2FormatOffer>& offers);
 
 }  // namespace camloc

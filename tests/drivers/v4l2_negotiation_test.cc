@@ -121,6 +121,12 @@ TEST_F(V4l2Negotiation, SaysWhatIsOffered) {
   EXPECT_NE(refusal({}).message().find("it offers no format at all"), std::string::npos);
 }
 
+TEST_F(V4l2Negotiation, FormatsOfTheSameSizesAreOneEntry) {
+  node_.formats = {{V4L2_PIX_FMT_YUYV, {{640, 480, {30}}}}, {V4L2_PIX_FMT_MJPEG, {{640, 480, {60}}}}, {V4L2_PIX_FMT_UYVY, {{640, 480, {30}}}}};
+  const std::string refused = refusal(sized(800, 600)).message();
+  EXPECT_TRUE(refused.ends_with("it offers YUYV, UYVY 640x480 (30 Hz); MJPG 640x480 (60 Hz)")) << refused;
+}
+
 TEST_F(V4l2Negotiation, ListsThatNeverEnd) {
   node_.faults.never_stops_listing = true;
   EXPECT_EQ(agreed({}), "YUYV 640x480 30");
