@@ -46,7 +46,7 @@ class DeviceClock {
   std::array<Point, kMaxPoints> points_{};  // the smallest delay of each second, oldest first; the last one is still open
   std::size_t num_points_ = 0;
   double open_until_ns_ = 0;
-  double slope_ = 0, base_ns_ = 0;          // delay floor at device time t: base_ns_ + slope_ * t
+  double slope_ = 0, base_ns_ = 0;  // delay floor at device time t: base_ns_ + slope_ * t
 };
 
 }  // namespace camloc

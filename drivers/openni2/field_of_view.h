@@ -24,6 +24,7 @@ struct StreamGeometry {
 
 /// Colour camera of `color` with depth that was registered to it, of the same view but possibly another size. Empty where the
 /// field of view is not known. Without depth (size 0) depth takes the size of colour.
-[[nodiscard]] std::optional<RgbdCamera> registered_camera(const StreamGeometry& color, int depth_width, int depth_height, double depth_unit_m);
+[[nodiscard]] std::optional<RgbdCamera> registered_camera(const StreamGeometry& color, int depth_width, int depth_height,
+                                                          double depth_unit_m);
 
 }  // namespace camloc::openni2

@@ -40,7 +40,9 @@ std::string drivers_folder_of(const std::string& library_path) {
   return (fs::path(library_path).parent_path() / (repository.empty() ? "OpenNI2/Drivers" : repository)).string();
 }
 
-bool is_driver_name(const std::string& name) { return name.rfind("lib", 0) == 0 && name.size() > 8 && name.compare(name.size() - 5, 5, ".so.0") == 0; }
+bool is_driver_name(const std::string& name) {
+  return name.rfind("lib", 0) == 0 && name.size() > 8 && name.compare(name.size() - 5, 5, ".so.0") == 0;
+}
 
 Openni2Driver inspect_driver(const fs::path& path) {
   Openni2Driver driver{path.filename().string(), false, ""};
@@ -62,14 +64,17 @@ Openni2Driver inspect_driver(const fs::path& path) {
 std::vector<Openni2Driver> inspect_drivers(const std::string& folder) {
   std::vector<std::string> names;
   std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) names.push_back(entry->path().filename().string());
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    names.push_back(entry->path().filename().string());
   std::sort(names.begin(), names.end());
   std::vector<Openni2Driver> drivers;
   for (const std::string& name : names) {
     if (is_driver_name(name)) {
       drivers.push_back(inspect_driver(fs::path(folder) / name));
     } else if (name.find(".so") != std::string::npos && std::find(names.begin(), names.end(), name + ".0") == names.end()) {
-      drivers.push_back({name, false, "its name does not end in .so.0, so Debian's OpenNI2 passes it over: add a symbolic link " + name.substr(0, name.find(".so")) + ".so.0"});
+      drivers.push_back({name, false,
+                         "its name does not end in .so.0, so Debian's OpenNI2 passes it over: add a symbolic link " +
+                             name.substr(0, name.find(".so")) + ".so.0"});
     }
   }
   return drivers;
@@ -87,19 +92,22 @@ Openni2Installation inspect_openni2() {
   result.is_library_found = true;
   result.library_path = library.value()->path;
   const OniVersion& version = library.value()->version;
-  result.version = std::to_string(version.major) + "." + std::to_string(version.minor) + "." + std::to_string(version.maintenance) + "." + std::to_string(version.build);
+  result.version = std::to_string(version.major) + "." + std::to_string(version.minor) + "." +
+                   std::to_string(version.maintenance) + "." + std::to_string(version.build);
   result.drivers_folder = drivers_folder_of(result.library_path);
   const Result<std::shared_ptr<openni2::Session>> session = openni2::Session::acquire();
   result.is_started = session.is_ok();
   if (!session) result.problem = session.status().message();
   result.drivers = inspect_drivers(result.drivers_folder);
-  if (session && std::none_of(result.drivers.begin(), result.drivers.end(), [](const Openni2Driver& driver) { return driver.is_loaded; })) {
+  if (session &&
+      std::none_of(result.drivers.begin(), result.drivers.end(), [](const Openni2Driver& driver) { return driver.is_loaded; })) {
     result.problem = result.drivers_folder + ": no driver was loaded from here";
   }
   if (!session) return result;
   for (const openni2::DeviceEntry& entry : (*session)->devices()) {
     char usb_id[16];
-    std::snprintf(usb_id, sizeof(usb_id), "%04x:%04x", static_cast<unsigned>(entry.usb_vendor_id) & 0xFFFFU, static_cast<unsigned>(entry.usb_product_id) & 0xFFFFU);
+    std::snprintf(usb_id, sizeof(usb_id), "%04x:%04x", static_cast<unsigned>(entry.usb_vendor_id) & 0xFFFFU,
+                  static_cast<unsigned>(entry.usb_product_id) & 0xFFFFU);
     result.devices.push_back({entry.uri, entry.vendor, entry.name, usb_id});
   }
   return result;

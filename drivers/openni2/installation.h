@@ -12,9 +12,9 @@
 namespace camloc {
 
 struct Openni2Driver {
-  std::string file;       ///< its name in the folder
-  bool is_loaded = false; ///< by the library
-  std::string problem;    ///< why not, empty where it is
+  std::string file;        ///< its name in the folder
+  bool is_loaded = false;  ///< by the library
+  std::string problem;     ///< why not, empty where it is
 };
 
 struct Openni2Device {

@@ -5,11 +5,10 @@
 // with the file's.
 #include "drivers/openni2/oni_file.h"
 
+#include <OniCEnums.h>
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-#include <OniCEnums.h>
 
 #include <algorithm>
 #include <bit>
@@ -26,16 +25,27 @@ namespace camloc::openni2 {
 namespace {
 
 constexpr std::size_t kFileHeadBytes = 24;
-constexpr std::uint32_t kRecordMagic = 0x0052494E;        // "NIR\0"
-constexpr std::uint32_t kMaxFieldBytes = 1 << 20;         // the largest known property, a table of 65536 shifts, has 128 KiB
+constexpr std::uint32_t kRecordMagic = 0x0052494E;  // "NIR\0"
+constexpr std::uint32_t kMaxFieldBytes = 1 << 20;   // the largest known property, a table of 65536 shifts, has 128 KiB
 constexpr std::uint32_t kMaxPayloadBytes = 64 << 20;
 constexpr std::int64_t kMaxStampUs = 4'000'000'000'000'000;  // the year 2096 in microseconds
 constexpr std::size_t kMaxNodes = 64;
 constexpr std::size_t kMaxFormats = 1000;
 
 enum RecordType : std::uint32_t {
-  kNodeAdded1004 = 2, kIntProperty = 3, kRealProperty = 4, kTextProperty = 5, kGeneralProperty = 6, kNodeRemoved = 7, kDataBegin = 8,
-  kNodeReady = 9, kNewData = 10, kEnd = 11, kNodeAdded1005 = 12, kNodeAdded = 13, kSeekTable = 14,
+  kNodeAdded1004 = 2,
+  kIntProperty = 3,
+  kRealProperty = 4,
+  kTextProperty = 5,
+  kGeneralProperty = 6,
+  kNodeRemoved = 7,
+  kDataBegin = 8,
+  kNodeReady = 9,
+  kNewData = 10,
+  kEnd = 11,
+  kNodeAdded1005 = 12,
+  kNodeAdded = 13,
+  kSeekTable = 14,
 };
 
 /// All of `size` bytes at `position`, or an error.
@@ -102,14 +112,20 @@ std::optional<OniCodec> codec_of(std::string_view letters) {
 /// Letters of a codec from the file, fit for a message.
 std::string printable(std::string_view letters) {
   std::string text(letters);
-  std::replace_if(text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
   return text;
 }
 
 /// OpenNI 1's numbers of pixel formats ("xnPixelFormat") as OpenNI2's.
 int from_xn_pixel_format(std::uint64_t value, OniNode node) {
   if (node == OniNode::kDepth) return ONI_PIXEL_FORMAT_DEPTH_1_MM;
-  constexpr int kFormats[] = {0, ONI_PIXEL_FORMAT_RGB888, ONI_PIXEL_FORMAT_YUV422, ONI_PIXEL_FORMAT_GRAY8, ONI_PIXEL_FORMAT_GRAY16, ONI_PIXEL_FORMAT_JPEG};
+  constexpr int kFormats[] = {0,
+                              ONI_PIXEL_FORMAT_RGB888,
+                              ONI_PIXEL_FORMAT_YUV422,
+                              ONI_PIXEL_FORMAT_GRAY8,
+                              ONI_PIXEL_FORMAT_GRAY16,
+                              ONI_PIXEL_FORMAT_JPEG};
   return value < std::size(kFormats) ? kFormats[value] : 0;
 }
 
@@ -134,12 +150,15 @@ class Scanner {
   /// The file's head; decides how long the heads of records are.
   [[nodiscard]] Status read_file_head() {
     std::uint8_t head[kFileHeadBytes];
-    if (file_size_ < kFileHeadBytes) return {ErrorCode::kInvalid, name_ + ": " + std::to_string(file_size_) + " bytes are no .oni recording"};
+    if (file_size_ < kFileHeadBytes)
+      return {ErrorCode::kInvalid, name_ + ": " + std::to_string(file_size_) + " bytes are no .oni recording"};
     if (Status status = read_at(fd_, name_, 0, sizeof(head), head); !status) return status;
     if (std::memcmp(head, "NI10", 4) != 0) return {ErrorCode::kInvalid, name_ + ": no .oni recording, which begins with NI10"};
     FieldReader fields(std::span<const std::uint8_t>(head).subspan(4));
-    const std::uint64_t major = fields.number(1), minor = fields.number(1), maintenance = fields.number(2), build = fields.number(4);
-    const std::string version = std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(maintenance) + "." + std::to_string(build);
+    const std::uint64_t major = fields.number(1), minor = fields.number(1), maintenance = fields.number(2),
+                        build = fields.number(4);
+    const std::string version =
+        std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(maintenance) + "." + std::to_string(build);
     const std::uint64_t ordered = maintenance << 32 | build;
     constexpr std::uint64_t k64BitVersion = std::uint64_t{1} << 32;
     if (major != 1 || minor != 0 || ordered < 4 || ordered > k64BitVersion) {
@@ -179,8 +198,10 @@ class Scanner {
     record.node_id = static_cast<std::uint32_t>(head.number(4));
     record.fields_size = static_cast<std::uint32_t>(head.number(4));
     record.payload_size = static_cast<std::uint32_t>(head.number(4));
-    if (record.fields_size < record_head_bytes_ || record.fields_size > kMaxFieldBytes) return broken("fields of " + std::to_string(record.fields_size) + " bytes");
-    if (record.payload_size > kMaxPayloadBytes && record.type != kSeekTable) return broken("image of " + std::to_string(record.payload_size) + " bytes");
+    if (record.fields_size < record_head_bytes_ || record.fields_size > kMaxFieldBytes)
+      return broken("fields of " + std::to_string(record.fields_size) + " bytes");
+    if (record.payload_size > kMaxPayloadBytes && record.type != kSeekTable)
+      return broken("image of " + std::to_string(record.payload_size) + " bytes");
     if (std::uint64_t{record.fields_size} + record.payload_size > file_size_ - position_) return broken("cut off");
     fields_.resize(record.fields_size);
     if (Status status = read_at(fd_, name_, position_, record.fields_size, fields_.data()); !status) return status;
@@ -189,10 +210,18 @@ class Scanner {
 
   Status handle(const Record& record, FieldReader& fields) {
     switch (record.type) {
-      case kNodeAdded1004: case kNodeAdded1005: case kNodeAdded: return add_node(record, fields);
-      case kIntProperty: case kRealProperty: case kTextProperty: case kGeneralProperty: return set_property(record, fields);
+      case kNodeAdded1004:
+      case kNodeAdded1005:
+      case kNodeAdded: return add_node(record, fields);
+      case kIntProperty:
+      case kRealProperty:
+      case kTextProperty:
+      case kGeneralProperty: return set_property(record, fields);
       case kNewData: return add_frame(record, fields);
-      case kNodeRemoved: case kDataBegin: case kNodeReady: case kSeekTable: return Status::ok();
+      case kNodeRemoved:
+      case kDataBegin:
+      case kNodeReady:
+      case kSeekTable: return Status::ok();
       default: return broken("unknown type " + std::to_string(record.type));
     }
   }
@@ -202,14 +231,17 @@ class Scanner {
     const std::uint64_t type = fields.number(4);
     const std::span<const std::uint8_t> letters = fields.take(4);
     if (fields.is_short()) return broken("fields are too short");
-    if (nodes_.size() == kMaxNodes || nodes_.count(record.node_id) != 0) return broken("node " + std::to_string(record.node_id) + " is one too many");
+    if (nodes_.size() == kMaxNodes || nodes_.count(record.node_id) != 0)
+      return broken("node " + std::to_string(record.node_id) + " is one too many");
     NodeState& node = nodes_[record.node_id];
     if (type != 2 && type != 3 && type != 5) return Status::ok();
     OniStream stream;
     stream.node = type == 2 ? OniNode::kDepth : type == 3 ? OniNode::kColor : OniNode::kInfrared;
     const std::string_view codec_letters(reinterpret_cast<const char*>(letters.data()), letters.size());
     const std::optional<OniCodec> codec = codec_of(codec_letters);
-    if (!codec) return {ErrorCode::kUnsupported, name_ + ": stream " + printable(name) + " is compressed as " + printable(codec_letters) + "; NONE, 16zP, 16zT and JPEG are read"};
+    if (!codec)
+      return {ErrorCode::kUnsupported, name_ + ": stream " + printable(name) + " is compressed as " + printable(codec_letters) +
+                                           "; NONE, 16zP, 16zT and JPEG are read"};
     stream.codec = *codec;
     node.is_stream = true;
     node.stream = streams_.size();
@@ -255,16 +287,18 @@ class Scanner {
     if (stamp_us > static_cast<std::uint64_t>(kMaxStampUs)) return broken("stamp out of range");
     const std::optional<PixelFormat> pixels = pixel_format_of(node.oni_pixel_format);
     OniStream& stream = streams_[node.stream];
-    if (!pixels) return {ErrorCode::kUnsupported, name_ + ": pixel format " + std::to_string(node.oni_pixel_format) + " is not read"};
+    if (!pixels)
+      return {ErrorCode::kUnsupported, name_ + ": pixel format " + std::to_string(node.oni_pixel_format) + " is not read"};
     node.format.pixels = *pixels;
     if (stream.codec == OniCodec::kJpeg) node.format.pixels.layout = PixelLayout::kJpeg;
-    if ((stream.node == OniNode::kDepth) != (pixels->depth_unit_m > 0)) return broken("pixels that do not belong to their stream");
+    if ((stream.node == OniNode::kDepth) != (pixels->depth_unit_m > 0))
+      return broken("pixels that do not belong to their stream");
     if (stream.formats.empty() || !(stream.formats.back() == node.format)) {
       if (stream.formats.size() == kMaxFormats) return broken("too many changes of format");
       stream.formats.push_back(node.format);
     }
-    stream.frames.push_back({position_ + record.fields_size, record.payload_size, static_cast<std::uint32_t>(stream.formats.size() - 1),
-                             static_cast<std::int64_t>(stamp_us)});
+    stream.frames.push_back({position_ + record.fields_size, record.payload_size,
+                             static_cast<std::uint32_t>(stream.formats.size() - 1), static_cast<std::int64_t>(stamp_us)});
     return Status::ok();
   }
 
@@ -287,16 +321,17 @@ class Scanner {
 }  // namespace
 
 bool OniFormat::operator==(const OniFormat& other) const {
-  return width == other.width && height == other.height && pixels.layout == other.pixels.layout && pixels.depth_unit_m == other.pixels.depth_unit_m &&
-         is_mirrored == other.is_mirrored && is_cropped == other.is_cropped && horizontal_fov_rad == other.horizontal_fov_rad &&
-         vertical_fov_rad == other.vertical_fov_rad;
+  return width == other.width && height == other.height && pixels.layout == other.pixels.layout &&
+         pixels.depth_unit_m == other.pixels.depth_unit_m && is_mirrored == other.is_mirrored && is_cropped == other.is_cropped &&
+         horizontal_fov_rad == other.horizontal_fov_rad && vertical_fov_rad == other.vertical_fov_rad;
 }
 
 Result<OniFile> OniFile::open(const std::string& path) {
   // O_NONBLOCK: opening a named pipe must not hang.
   UniqueFd file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!file.is_open()) {
-    return Status(errno == ENOENT || errno == ENOTDIR ? ErrorCode::kNotFound : ErrorCode::kIo, path + ": " + std::generic_category().message(errno));
+    return Status(errno == ENOENT || errno == ENOTDIR ? ErrorCode::kNotFound : ErrorCode::kIo,
+                  path + ": " + std::generic_category().message(errno));
   }
   return open(std::move(file), path);
 }
@@ -318,7 +353,8 @@ Result<OniFile> OniFile::open(UniqueFd file, const std::string& name) {
 }
 
 const OniStream* OniFile::find(OniNode node) const {
-  const auto found = std::find_if(streams_.begin(), streams_.end(), [node](const OniStream& stream) { return stream.node == node; });
+  const auto found =
+      std::find_if(streams_.begin(), streams_.end(), [node](const OniStream& stream) { return stream.node == node; });
   return found == streams_.end() ? nullptr : &*found;
 }
 

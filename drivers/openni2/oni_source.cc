@@ -73,10 +73,10 @@ std::vector<Pair> pair_frames(const std::vector<OniFrameEntry>& color, const std
 struct OniRecording {
   OniFile file;
   OniStream color;
-  OniStream depth;                 // without frames where there is none
+  OniStream depth;  // without frames where there is none
   std::vector<Pair> frames;
-  std::size_t num_recorded = 0;    // before any selection
-  std::int64_t length_ns = 0;      // first exposure to one mean interval after the last
+  std::size_t num_recorded = 0;  // before any selection
+  std::int64_t length_ns = 0;    // first exposure to one mean interval after the last
 };
 
 class OniSource final : public FrameSource {
@@ -106,7 +106,8 @@ class OniSource final : public FrameSource {
     const OniFrameEntry& color = recording_.color.frames[pair.color];
     loaded_.sequence = pair.color + round_ * recording_.num_recorded;
     // Unsigned: after ages of looping it wraps instead of overflowing.
-    loaded_.stamp_ns = static_cast<std::int64_t>(static_cast<std::uint64_t>(color.stamp_us) * 1000 + round_ * static_cast<std::uint64_t>(recording_.length_ns));
+    loaded_.stamp_ns = static_cast<std::int64_t>(static_cast<std::uint64_t>(color.stamp_us) * 1000 +
+                                                 round_ * static_cast<std::uint64_t>(recording_.length_ns));
     Status status = load_color(color);
     if (pair.depth == kNoDepth) {
       loaded_.depth.resize(0, 0);
@@ -131,11 +132,15 @@ class OniSource final : public FrameSource {
     Image<std::uint8_t>& gray = format.is_mirrored ? unmirrored_ : loaded_.gray;
     Status status = decode_gray(bytes_, "colour image", &gray);
     if (status) status = check_size(gray.width, gray.height, format);
-    if (status && format.is_mirrored) status = to_gray({gray.pixels, gray.width, gray.height, static_cast<std::size_t>(gray.width), PixelLayout::kGray8, true}, &loaded_.gray);
+    if (status && format.is_mirrored)
+      status = to_gray({gray.pixels, gray.width, gray.height, static_cast<std::size_t>(gray.width), PixelLayout::kGray8, true},
+                       &loaded_.gray);
     if (!status || !options_.wants_color) return status;
     Result<ColorImage> color = decode_color(bytes_, "colour image");
     if (!color) return color.status();
-    return to_bgr({color->pixels, color->width, color->height, 3 * static_cast<std::size_t>(color->width), PixelLayout::kRgb24, format.is_mirrored}, &loaded_.color);
+    return to_bgr({color->pixels, color->width, color->height, 3 * static_cast<std::size_t>(color->width), PixelLayout::kRgb24,
+                   format.is_mirrored},
+                  &loaded_.color);
   }
 
   Status load_depth(const OniFrameEntry& entry) {
@@ -187,7 +192,9 @@ Status check_stream(const OniStream& stream, const std::string& name) {
   const OniFormat& format = stream.formats.front();
   if (format.is_cropped) return {ErrorCode::kUnsupported, name + ": a recording of cropped images is not read"};
   const bool is_fine = format.width > 0 && format.height > 0 && format.width <= kMaxImageSide && format.height <= kMaxImageSide;
-  if (!is_fine) return {ErrorCode::kCorrupt, name + ": images of " + std::to_string(format.width) + "x" + std::to_string(format.height) + " pixels"};
+  if (!is_fine)
+    return {ErrorCode::kCorrupt,
+            name + ": images of " + std::to_string(format.width) + "x" + std::to_string(format.height) + " pixels"};
   const bool is_depth = stream.node == OniNode::kDepth;
   const bool is_depth_codec = stream.codec == OniCodec::k16z || stream.codec == OniCodec::k16zTable;
   if (stream.codec == OniCodec::kNone || (is_depth ? is_depth_codec : stream.codec == OniCodec::kJpeg)) return Status::ok();
@@ -196,7 +203,8 @@ Status check_stream(const OniStream& stream, const std::string& name) {
 
 std::int64_t length_of(const std::vector<OniFrameEntry>& frames) {
   constexpr std::int64_t kDefaultIntervalNs = 33'333'333;
-  const auto [first, last] = std::minmax_element(frames.begin(), frames.end(), [](const auto& a, const auto& b) { return a.stamp_us < b.stamp_us; });
+  const auto [first, last] =
+      std::minmax_element(frames.begin(), frames.end(), [](const auto& a, const auto& b) { return a.stamp_us < b.stamp_us; });
   const std::int64_t span_ns = (last->stamp_us - first->stamp_us) * 1000;
   const auto num_gaps = static_cast<std::int64_t>(frames.size()) - 1;
   return num_gaps > 0 ? span_ns + span_ns / num_gaps : kDefaultIntervalNs;
@@ -206,7 +214,8 @@ Result<OniRecording> select_recording(const SourceUrl& url) {
   Result<OniFile> file = OniFile::open(url.path);
   if (!file) return file.status();
   const OniStream* color = file->find(OniNode::kColor) != nullptr ? file->find(OniNode::kColor) : file->find(OniNode::kInfrared);
-  if (color == nullptr) return Status(ErrorCode::kUnsupported, url.path + ": records depth alone; localization needs a colour or infrared stream");
+  if (color == nullptr)
+    return Status(ErrorCode::kUnsupported, url.path + ": records depth alone; localization needs a colour or infrared stream");
   const OniStream* depth = file->find(OniNode::kDepth);
   if (Status status = check_stream(*color, url.path); !status) return status;
   if (depth != nullptr) {
@@ -215,9 +224,12 @@ Result<OniRecording> select_recording(const SourceUrl& url) {
   OniRecording recording{std::move(file).value(), {}, {}, {}, color->frames.size(), length_of(color->frames)};
   recording.color = *color;
   if (depth != nullptr) recording.depth = *depth;
-  Result<std::vector<std::size_t>> chosen = select_frames(url.text_option("frames", ""), url.text_option("exclude", ""), recording.num_recorded);
+  Result<std::vector<std::size_t>> chosen =
+      select_frames(url.text_option("frames", ""), url.text_option("exclude", ""), recording.num_recorded);
   if (!chosen) return chosen.status().with_context(url.path);
-  if (chosen->empty()) return Status(ErrorCode::kInvalid, url.text + ": the selection leaves none of " + std::to_string(recording.num_recorded) + " frames");
+  if (chosen->empty())
+    return Status(ErrorCode::kInvalid,
+                  url.text + ": the selection leaves none of " + std::to_string(recording.num_recorded) + " frames");
   const std::vector<Pair> pairs = pair_frames(recording.color.frames, recording.depth.frames);
   for (const std::size_t index : *chosen) recording.frames.push_back(pairs[index]);
   return recording;
@@ -229,14 +241,17 @@ FrameSourceInfo describe(const std::string& path, const OniRecording& recording,
   info.color_width = color.width;
   info.color_height = color.height;
   info.num_frames = recording.frames.size();
-  info.description = "OpenNI recording " + path + ", " + std::to_string(recording.frames.size()) + " of " + std::to_string(recording.num_recorded) +
-                     " frames, " + (recording.color.node == OniNode::kInfrared ? "infrared " : "") + std::to_string(color.width) + "x" + std::to_string(color.height);
+  info.description = "OpenNI recording " + path + ", " + std::to_string(recording.frames.size()) + " of " +
+                     std::to_string(recording.num_recorded) + " frames, " +
+                     (recording.color.node == OniNode::kInfrared ? "infrared " : "") + std::to_string(color.width) + "x" +
+                     std::to_string(color.height);
   const OniFormat* depth = recording.depth.frames.empty() ? nullptr : &recording.depth.formats.front();
   if (depth != nullptr) {
     info.depth_width = depth->width;
     info.depth_height = depth->height;
     info.description += std::string(", depth ") + std::to_string(depth->width) + "x" + std::to_string(depth->height) + " in " +
-                        (depth->pixels.depth_unit_m < 5e-4 ? "0.1 mm" : "1 mm") + (is_registered ? ", registered" : ", registration not in the file");
+                        (depth->pixels.depth_unit_m < 5e-4 ? "0.1 mm" : "1 mm") +
+                        (is_registered ? ", registered" : ", registration not in the file");
   }
   if (!recording.file.truncation()) info.description += "; cut off: " + recording.file.truncation().message();
   // Infrared and depth are images of one sensor.
@@ -250,7 +265,8 @@ FrameSourceInfo describe(const std::string& path, const OniRecording& recording,
 
 Result<bool> flag_option(const SourceUrl& url, const std::string& key) {
   const std::string value = url.text_option(key, "0");
-  if (value != "0" && value != "1") return Status(ErrorCode::kInvalid, url.text + ": option " + key + "=" + value + ": expected 0 or 1");
+  if (value != "0" && value != "1")
+    return Status(ErrorCode::kInvalid, url.text + ": option " + key + "=" + value + ": expected 0 or 1");
   return value == "1";
 }
 
@@ -268,7 +284,8 @@ Result<std::unique_ptr<FrameSource>> open_oni_source(const SourceUrl& url, const
   Result<OniRecording> recording = select_recording(url);
   if (!recording) return recording.status();
   FrameSourceInfo info = describe(url.path, *recording, *is_registered);
-  return std::unique_ptr<FrameSource>(std::make_unique<OniSource>(std::move(recording).value(), OniOptions{*speed, *loop, *is_registered, options.wants_color}, std::move(info)));
+  return std::unique_ptr<FrameSource>(std::make_unique<OniSource>(
+      std::move(recording).value(), OniOptions{*speed, *loop, *is_registered, options.wants_color}, std::move(info)));
 }
 
 }  // namespace camloc

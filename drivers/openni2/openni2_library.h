@@ -62,7 +62,7 @@ struct DeviceEntry {
 /// Where the code of the library is.
 struct LoadedLibrary {
   Api api;
-  std::string path;     ///< as the loader found it
+  std::string path;  ///< as the loader found it
   OniVersion version{};
 };
 

@@ -48,7 +48,9 @@ using Entries = std::array<Entry, 3>;
 
 /// A free place, or that of the oldest frame.
 Entry* place_in(Entries* entries) {
-  const auto is_older = [](const Entry& a, const Entry& b) { return a.is_fresh != b.is_fresh ? !a.is_fresh : a.arrival_ns < b.arrival_ns; };
+  const auto is_older = [](const Entry& a, const Entry& b) {
+    return a.is_fresh != b.is_fresh ? !a.is_fresh : a.arrival_ns < b.arrival_ns;
+  };
   return &*std::min_element(entries->begin(), entries->end(), is_older);
 }
 
@@ -66,7 +68,10 @@ std::uint64_t drop_through(Entries* entries, const Entry& last) {
 class Openni2Source final : public FrameSource {
  public:
   Openni2Source(std::unique_ptr<Device> device, FrameSourceInfo info, bool wants_color)
-      : device_(std::move(device)), info_(std::move(info)), wants_color_(wants_color), max_pair_gap_ns_(600'000'000 / device_->image().mode.fps) {
+      : device_(std::move(device)),
+        info_(std::move(info)),
+        wants_color_(wants_color),
+        max_pair_gap_ns_(600'000'000 / device_->image().mode.fps) {
     // All memory now, none per frame.
     for (Entry& entry : images_) {
       entry.gray.resize(info_.color_width, info_.color_height);
@@ -122,11 +127,13 @@ class Openni2Source final : public FrameSource {
     const openni2::Api& api = device_->session().api();
     OniStreamHandle streams[2] = {device_->image().handle, device_->depth().handle};
     int index = -1;
-    const OniStatus waited = api.wait_for_any_stream(streams, device_->has_depth() ? 2 : 1, &index, static_cast<int>(timeout.count()));
+    const OniStatus waited =
+        api.wait_for_any_stream(streams, device_->has_depth() ? 2 : 1, &index, static_cast<int>(timeout.count()));
     if (waited == ONI_STATUS_TIME_OUT) return false;
     if (waited != ONI_STATUS_OK || index < 0 || index > 1) return library_error("waiting for a frame failed");
     OniFrame* raw = nullptr;
-    if (api.stream_read_frame(streams[index], &raw) != ONI_STATUS_OK || raw == nullptr) return library_error("reading a frame failed");
+    if (api.stream_read_frame(streams[index], &raw) != ONI_STATUS_OK || raw == nullptr)
+      return library_error("reading a frame failed");
     const Status status = keep(*raw, index == 0);
     api.frame_release(raw);
     if (status) return true;
@@ -135,7 +142,8 @@ class Openni2Source final : public FrameSource {
   }
 
   [[nodiscard]] Status library_error(const std::string& what) const {
-    return {ErrorCode::kUnavailable, "OpenNI2 device " + device_->uri() + ": " + what + " (" + device_->session().last_error() + ")"};
+    return {ErrorCode::kUnavailable,
+            "OpenNI2 device " + device_->uri() + ": " + what + " (" + device_->session().last_error() + ")"};
   }
 
   Status keep(const OniFrame& raw, bool is_image) {
@@ -143,14 +151,23 @@ class Openni2Source final : public FrameSource {
     const std::int64_t arrival_ns = monotonic_ns();
     const Stream& stream = is_image ? device_->image() : device_->depth();
     if (is_image) ++sequence_;
-    const auto bad = [&](const std::string& why) { return Status(ErrorCode::kCorrupt, std::string(is_image ? "image" : "depth") + " frame " + std::to_string(raw.frameIndex) + ": " + why); };
+    const auto bad = [&](const std::string& why) {
+      return Status(ErrorCode::kCorrupt,
+                    std::string(is_image ? "image" : "depth") + " frame " + std::to_string(raw.frameIndex) + ": " + why);
+    };
     if (raw.data == nullptr || raw.dataSize <= 0 || raw.stride <= 0) return bad("empty");
-    if (raw.width != stream.mode.width || raw.height != stream.mode.height || raw.croppingEnabled != FALSE || raw.videoMode.pixelFormat != stream.mode.oni_pixel_format) {
-      return bad(std::to_string(raw.width) + "x" + std::to_string(raw.height) + " in format " + std::to_string(raw.videoMode.pixelFormat) + " instead of " + describe(stream.mode));
+    if (raw.width != stream.mode.width || raw.height != stream.mode.height || raw.croppingEnabled != FALSE ||
+        raw.videoMode.pixelFormat != stream.mode.oni_pixel_format) {
+      return bad(std::to_string(raw.width) + "x" + std::to_string(raw.height) + " in format " +
+                 std::to_string(raw.videoMode.pixelFormat) + " instead of " + describe(stream.mode));
     }
     if (raw.timestamp > kMaxStampUs) return bad("stamp out of range");
-    const RawImage pixels{{static_cast<const std::uint8_t*>(raw.data), static_cast<std::size_t>(raw.dataSize)}, raw.width, raw.height,
-                          static_cast<std::size_t>(raw.stride), stream.pixels.layout, stream.is_mirrored};
+    const RawImage pixels{{static_cast<const std::uint8_t*>(raw.data), static_cast<std::size_t>(raw.dataSize)},
+                          raw.width,
+                          raw.height,
+                          static_cast<std::size_t>(raw.stride),
+                          stream.pixels.layout,
+                          stream.is_mirrored};
     Entry* entry = place_in(is_image ? &images_ : &depths_);
     if (std::exchange(entry->is_fresh, false)) ++num_unpaired_;
     Status status = is_image ? to_gray(pixels, &entry->gray) : to_depth(pixels, &entry->depth);
@@ -204,7 +221,8 @@ class Openni2Source final : public FrameSource {
   /// Most devices stamp both streams with one clock; some count each from its own start.
   void compare_clocks() {
     constexpr std::int64_t kSameClockNs = 500'000'000;
-    const std::int64_t apart_ns = (newest_image_->device_ns - newest_depth_->device_ns) - (newest_image_->arrival_ns - newest_depth_->arrival_ns);
+    const std::int64_t apart_ns =
+        (newest_image_->device_ns - newest_depth_->device_ns) - (newest_image_->arrival_ns - newest_depth_->arrival_ns);
     has_compared_clocks_ = true;
     has_shared_clock_ = std::llabs(apart_ns) < kSameClockNs;
   }
@@ -258,7 +276,8 @@ Result<std::unique_ptr<FrameSource>> open_openni2_source(const SourceUrl& url, c
   if (!device) return device.status();
   if (Status status = (*device)->start(); !status) return status;
   FrameSourceInfo info = describe(**device);
-  return std::unique_ptr<FrameSource>(std::make_unique<Openni2Source>(std::move(device).value(), std::move(info), options.wants_color));
+  return std::unique_ptr<FrameSource>(
+      std::make_unique<Openni2Source>(std::move(device).value(), std::move(info), options.wants_color));
 }
 
 }  // namespace camloc

@@ -45,7 +45,7 @@ struct RawImage {
   int height = 0;
   std::size_t stride_bytes = 0;  ///< from row to row
   PixelLayout layout = PixelLayout::kGray8;
-  bool is_mirrored = false;      ///< left and right are exchanged; the conversions undo it
+  bool is_mirrored = false;  ///< left and right are exchanged; the conversions undo it
 };
 
 /// kCorrupt where the bytes cannot hold the image. Every conversion below checks it first.

@@ -26,16 +26,19 @@ int main(int argc, char** argv) {
   OniDeviceInfo* list = nullptr;
   int count = 0;
   OniDeviceHandle device = nullptr;
-  if (oniInitialize(ONI_API_VERSION) != ONI_STATUS_OK || oniGetDeviceList(&list, &count) != ONI_STATUS_OK || count == 0) return fail("no device");
+  if (oniInitialize(ONI_API_VERSION) != ONI_STATUS_OK || oniGetDeviceList(&list, &count) != ONI_STATUS_OK || count == 0)
+    return fail("no device");
   if (oniDeviceOpen(list[0].uri, &device) != ONI_STATUS_OK) return fail("cannot open");
   OniRecorderHandle recorder = nullptr;
   if (oniCreateRecorder(argv[1], &recorder) != ONI_STATUS_OK) return fail("cannot record");
   std::vector<OniStreamHandle> streams;
   for (const OniSensorType sensor : {ONI_SENSOR_COLOR, ONI_SENSOR_DEPTH, ONI_SENSOR_IR}) {
     OniStreamHandle stream = nullptr;
-    if (oniDeviceGetSensorInfo(device, sensor) == nullptr || oniDeviceCreateStream(device, sensor, &stream) != ONI_STATUS_OK) continue;
+    if (oniDeviceGetSensorInfo(device, sensor) == nullptr || oniDeviceCreateStream(device, sensor, &stream) != ONI_STATUS_OK)
+      continue;
     streams.push_back(stream);
-    if (oniRecorderAttachStream(recorder, stream, std::strcmp(argv[2], "1") == 0 ? TRUE : FALSE) != ONI_STATUS_OK) return fail("cannot attach");
+    if (oniRecorderAttachStream(recorder, stream, std::strcmp(argv[2], "1") == 0 ? TRUE : FALSE) != ONI_STATUS_OK)
+      return fail("cannot attach");
   }
   if (oniRecorderStart(recorder) != ONI_STATUS_OK) return fail("cannot start");
   ::usleep(300'000);  // its thread starts later than it says

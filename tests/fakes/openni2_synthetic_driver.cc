@@ -3,7 +3,8 @@
 //
 // A driver for OpenNI2 whose devices exist only here: known pixels and stamps, and faults on request (openni2_synthetic.h).
 // OpenNI2 loads it from OpenNI2/Drivers/lib*.so.0 beside libOpenNI2.so.0. Environment variables CAMLOC_SYNTHETIC_<NAME>
-// (WIDTH, HEIGHT, COLOR_FORMAT, DEPTH_FORMAT, INFRARED_FORMAT, REAL_FPS, MAX_FRAMES, MIRROR) set the switches for programs that cannot.
+// (WIDTH, HEIGHT, COLOR_FORMAT, DEPTH_FORMAT, INFRARED_FORMAT, REAL_FPS, MAX_FRAMES, MIRROR) set the switches for programs that
+// cannot.
 //
 // A recorder takes only streams that answer for STRIDE and CROPPING; without them a file is written that plays nothing.
 
@@ -54,7 +55,8 @@ void put_u16(std::uint8_t* to, std::uint16_t value) { std::memcpy(to, &value, si
 void put_pixel(std::uint8_t* row, int format, int frame, int column, int x, int y) {
   using namespace camloc::synthetic;
   switch (format) {
-    case ONI_PIXEL_FORMAT_DEPTH_1_MM: case ONI_PIXEL_FORMAT_DEPTH_100_UM: return put_u16(row + 2 * column, depth_at(frame, x, y));
+    case ONI_PIXEL_FORMAT_DEPTH_1_MM:
+    case ONI_PIXEL_FORMAT_DEPTH_100_UM: return put_u16(row + 2 * column, depth_at(frame, x, y));
     case ONI_PIXEL_FORMAT_GRAY16: return put_u16(row + 2 * column, infrared_at(frame, x, y));
     case ONI_PIXEL_FORMAT_GRAY8: row[column] = color_at(frame, x, y)[0]; return;
     case ONI_PIXEL_FORMAT_YUV422:
@@ -83,8 +85,8 @@ class SyntheticStream final : public oni::driver::StreamBase {
   void stop() override { halt(); }
 
   OniBool isPropertySupported(int id) override {
-    return id == ONI_STREAM_PROPERTY_VIDEO_MODE || id == ONI_STREAM_PROPERTY_MAX_VALUE || id == ONI_STREAM_PROPERTY_MIRRORING || id == ONI_STREAM_PROPERTY_STRIDE ||
-           id == ONI_STREAM_PROPERTY_CROPPING ||
+    return id == ONI_STREAM_PROPERTY_VIDEO_MODE || id == ONI_STREAM_PROPERTY_MAX_VALUE || id == ONI_STREAM_PROPERTY_MIRRORING ||
+           id == ONI_STREAM_PROPERTY_STRIDE || id == ONI_STREAM_PROPERTY_CROPPING ||
            (control().has_field_of_view && (id == ONI_STREAM_PROPERTY_HORIZONTAL_FOV || id == ONI_STREAM_PROPERTY_VERTICAL_FOV));
   }
   OniStatus getProperty(int id, void* data, int* size) override {
@@ -100,7 +102,8 @@ class SyntheticStream final : public oni::driver::StreamBase {
     }
   }
   OniStatus setProperty(int id, const void* data, int size) override {
-    if (id == ONI_STREAM_PROPERTY_VIDEO_MODE && size == static_cast<int>(sizeof(mode_))) return std::memcmp(data, &mode_, sizeof(mode_)) == 0 ? ONI_STATUS_OK : ONI_STATUS_NOT_SUPPORTED;
+    if (id == ONI_STREAM_PROPERTY_VIDEO_MODE && size == static_cast<int>(sizeof(mode_)))
+      return std::memcmp(data, &mode_, sizeof(mode_)) == 0 ? ONI_STATUS_OK : ONI_STATUS_NOT_SUPPORTED;
     if (id != ONI_STREAM_PROPERTY_MIRRORING || size != static_cast<int>(sizeof(OniBool))) return ONI_STATUS_NOT_SUPPORTED;
     OniBool wanted = FALSE;
     std::memcpy(&wanted, data, sizeof(wanted));
@@ -120,7 +123,8 @@ class SyntheticStream final : public oni::driver::StreamBase {
 
   void run() {
     using Clock = std::chrono::steady_clock;
-    const Clock::time_point begin = Clock::now() + std::chrono::microseconds(sensor_ == ONI_SENSOR_DEPTH ? control().depth_latency_us.load() : 0);
+    const Clock::time_point begin =
+        Clock::now() + std::chrono::microseconds(sensor_ == ONI_SENSOR_DEPTH ? control().depth_latency_us.load() : 0);
     const auto interval = std::chrono::nanoseconds(1'000'000'000 / control().real_fps);
     const int max_frames = control().max_frames;
     for (int frame = 0; max_frames == 0 || frame < max_frames; ++frame) {
@@ -147,7 +151,8 @@ class SyntheticStream final : public oni::driver::StreamBase {
     frame->timestamp = stamp_us(number);
     for (int y = 0; y < mode_.resolutionY; ++y) {
       std::uint8_t* row = static_cast<std::uint8_t*>(frame->data) + y * row_bytes;
-      for (int x = 0; x < mode_.resolutionX; ++x) put_pixel(row, mode_.pixelFormat, number, is_mirrored_ ? mode_.resolutionX - 1 - x : x, x, y);
+      for (int x = 0; x < mode_.resolutionX; ++x)
+        put_pixel(row, mode_.pixelFormat, number, is_mirrored_ ? mode_.resolutionX - 1 - x : x, x, y);
     }
     if (take_one(control().num_short_frames)) frame->dataSize -= 1;
     if (take_one(control().num_small_frames)) frame->width /= 2;
@@ -200,8 +205,12 @@ class SyntheticDevice final : public oni::driver::DeviceBase {
   }
   void destroyStream(oni::driver::StreamBase* stream) override { delete stream; }
 
-  OniBool isImageRegistrationModeSupported(OniImageRegistrationMode mode) override { return mode == ONI_IMAGE_REGISTRATION_OFF || control().can_register; }
-  OniBool isPropertySupported(int id) override { return id == ONI_DEVICE_PROPERTY_SERIAL_NUMBER || id == ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION; }
+  OniBool isImageRegistrationModeSupported(OniImageRegistrationMode mode) override {
+    return mode == ONI_IMAGE_REGISTRATION_OFF || control().can_register;
+  }
+  OniBool isPropertySupported(int id) override {
+    return id == ONI_DEVICE_PROPERTY_SERIAL_NUMBER || id == ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION;
+  }
   OniStatus getProperty(int id, void* data, int* size) override {
     if (id == ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION) return give(registration_, data, size);
     const std::string serial = "SYNTH000" + std::to_string(index_);
@@ -211,7 +220,8 @@ class SyntheticDevice final : public oni::driver::DeviceBase {
     return ONI_STATUS_OK;
   }
   OniStatus setProperty(int id, const void* data, int size) override {
-    if (id != ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION || size != static_cast<int>(sizeof(registration_))) return ONI_STATUS_NOT_SUPPORTED;
+    if (id != ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION || size != static_cast<int>(sizeof(registration_)))
+      return ONI_STATUS_NOT_SUPPORTED;
     // Forgetful: takes the setting only at the second time, as after the streams have started.
     if (control().forgets_registration && !std::exchange(was_set_, true)) return ONI_STATUS_OK;
     std::memcpy(&registration_, data, sizeof(registration_));
@@ -264,15 +274,21 @@ class SyntheticDriver final : public oni::driver::DriverBase {
     if (is_in) deviceConnected(&info);
     if (!is_in) deviceDisconnected(&info);
   }
-  oni::driver::DeviceBase* deviceOpen(const char* uri, const char*) override { return new SyntheticDevice(std::atoi(std::strrchr(uri, '/') + 1)); }
+  oni::driver::DeviceBase* deviceOpen(const char* uri, const char*) override {
+    return new SyntheticDevice(std::atoi(std::strrchr(uri, '/') + 1));
+  }
   void deviceClose(oni::driver::DeviceBase* device) override { delete device; }
   void shutdown() override { current_driver() = nullptr; }
 };
 
 void read_environment() {
-  const std::map<std::string, std::atomic<int>*> switches{
-      {"WIDTH", &control().width}, {"HEIGHT", &control().height}, {"COLOR_FORMAT", &control().color_format}, {"DEPTH_FORMAT", &control().depth_format},
-      {"INFRARED_FORMAT", &control().infrared_format}, {"REAL_FPS", &control().real_fps}, {"MAX_FRAMES", &control().max_frames}};
+  const std::map<std::string, std::atomic<int>*> switches{{"WIDTH", &control().width},
+                                                          {"HEIGHT", &control().height},
+                                                          {"COLOR_FORMAT", &control().color_format},
+                                                          {"DEPTH_FORMAT", &control().depth_format},
+                                                          {"INFRARED_FORMAT", &control().infrared_format},
+                                                          {"REAL_FPS", &control().real_fps},
+                                                          {"MAX_FRAMES", &control().max_frames}};
   for (const auto& [name, value] : switches) {
     if (const char* text = std::getenv(("CAMLOC_SYNTHETIC_" + name).c_str())) *value = std::atoi(text);
   }

@@ -19,9 +19,9 @@
 
 #include "drivers/frame_source.h"
 #include "drivers/openni2/installation.h"
-#include "tests/openni2/thread_allocations.h"
 #include "tests/drivers/test_folder.h"
 #include "tests/fakes/openni2_synthetic.h"
+#include "tests/openni2/thread_allocations.h"
 
 // The library is not built with the sanitizers and keeps what it has allocated for its drivers.
 extern "C" const char* __lsan_default_suppressions();
@@ -44,10 +44,12 @@ std::int64_t now_ns() {
 class Openni2Live : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (void* library = ::dlopen("libOpenNI2.so.0", RTLD_NOW | RTLD_NODELETE); library == nullptr) GTEST_SKIP() << "libOpenNI2 is not installed (package libopenni2-0)";
+    if (void* library = ::dlopen("libOpenNI2.so.0", RTLD_NOW | RTLD_NODELETE); library == nullptr)
+      GTEST_SKIP() << "libOpenNI2 is not installed (package libopenni2-0)";
     const Openni2Installation installation = inspect_openni2();
     std::error_code ignored;
-    if (!std::filesystem::equivalent(installation.drivers_folder, std::filesystem::path(CAMLOC_SYNTHETIC_DRIVER).parent_path(), ignored)) {
+    if (!std::filesystem::equivalent(installation.drivers_folder, std::filesystem::path(CAMLOC_SYNTHETIC_DRIVER).parent_path(),
+                                     ignored)) {
       GTEST_SKIP() << "OpenNI2 looks for drivers in " << installation.drivers_folder << ": set LD_LIBRARY_PATH as ctest does";
     }
     driver_ = ::dlopen(CAMLOC_SYNTHETIC_DRIVER, RTLD_NOW | RTLD_NODELETE);
@@ -57,7 +59,9 @@ class Openni2Live : public ::testing::Test {
     std::construct_at(control_);
   }
   [[nodiscard]] Control& control() const { return *control_; }
-  void plug(int index, bool is_in) const { reinterpret_cast<synthetic::PlugFunction>(::dlsym(driver_, synthetic::kPlugSymbol))(index, is_in); }
+  void plug(int index, bool is_in) const {
+    reinterpret_cast<synthetic::PlugFunction>(::dlsym(driver_, synthetic::kPlugSymbol))(index, is_in);
+  }
 
   static std::unique_ptr<FrameSource> open(const std::string& url = "openni2://", bool wants_color = false) {
     auto source = open_frame_source(url, {wants_color});
@@ -214,7 +218,8 @@ TEST_F(Openni2Live, SaysThatDepthIsNotRegistered) {
 
 TEST_F(Openni2Live, FindsDevicesByUriIndexAndSerial) {
   control().num_devices = 3;
-  for (const auto& [selector, serial] : {std::pair{"synthetic://1", "SYNTH0001"}, {"2", "SYNTH0002"}, {"SYNTH0001", "SYNTH0001"}, {"", "SYNTH0000"}}) {
+  for (const auto& [selector, serial] :
+       {std::pair{"synthetic://1", "SYNTH0001"}, {"2", "SYNTH0002"}, {"SYNTH0001", "SYNTH0001"}, {"", "SYNTH0000"}}) {
     auto source = open(std::string("openni2://") + selector);
     ASSERT_NE(source, nullptr);
     EXPECT_EQ(source->info().serial, serial);
@@ -375,7 +380,8 @@ TEST(Openni2Broken, DISABLED_other_version) {
 }
 
 TEST(Openni2Broken, DISABLED_without_drivers) {
-  if (::dlopen("libOpenNI2.so.0", RTLD_NOW | RTLD_NODELETE) == nullptr) GTEST_SKIP() << "libOpenNI2 is not installed (package libopenni2-0)";
+  if (::dlopen("libOpenNI2.so.0", RTLD_NOW | RTLD_NODELETE) == nullptr)
+    GTEST_SKIP() << "libOpenNI2 is not installed (package libopenni2-0)";
   for (int i = 0; i < 3; ++i) {
     const Status status = open_frame_source("openni2://").status();
     EXPECT_EQ(status.code(), ErrorCode::kUnavailable);
@@ -391,8 +397,8 @@ TEST(Openni2Broken, DISABLED_without_drivers) {
 
 /// Records `num_frames` of each stream with OpenNI2's recorder, which is tried again when it hangs on closing.
 bool record(const std::string& path, int num_frames, const std::string& environment, bool is_lossy) {
-  const std::string command = "CAMLOC_SYNTHETIC_MAX_FRAMES=" + std::to_string(num_frames) + " CAMLOC_SYNTHETIC_REAL_FPS=150 " + environment + " timeout -k 2 15 " +
-                              CAMLOC_OPENNI2_RECORDER + " " + path + (is_lossy ? " 1" : " 0");
+  const std::string command = "CAMLOC_SYNTHETIC_MAX_FRAMES=" + std::to_string(num_frames) + " CAMLOC_SYNTHETIC_REAL_FPS=150 " +
+                              environment + " timeout -k 2 15 " + CAMLOC_OPENNI2_RECORDER + " " + path + (is_lossy ? " 1" : " 0");
   for (int attempt = 0; attempt < 4; ++attempt) {
     const int status = std::system(command.c_str());
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return true;
@@ -404,7 +410,8 @@ TEST_F(Openni2Live, RecordingComesBackFrameByFrame) {
   const TestFolder folder;
   constexpr int kNumFrames = 120;
   for (const auto& [depth_format, mirror] : {std::pair{100, "1"}, {101, "0"}}) {
-    const std::string environment = std::string("CAMLOC_SYNTHETIC_MIRROR=") + mirror + " CAMLOC_SYNTHETIC_DEPTH_FORMAT=" + std::to_string(depth_format);
+    const std::string environment =
+        std::string("CAMLOC_SYNTHETIC_MIRROR=") + mirror + " CAMLOC_SYNTHETIC_DEPTH_FORMAT=" + std::to_string(depth_format);
     ASSERT_TRUE(record(folder / "whole.oni", kNumFrames, environment, false));
     auto source = open("oni://" + (folder / "whole.oni") + "?registered=1", true);
     ASSERT_NE(source, nullptr);
@@ -445,7 +452,8 @@ TEST_F(Openni2Live, RecordingOfYuvAndInfraredComesBack) {
   FrameBuffer frame;
   for (int i = 0; i < 10; ++i) {
     ASSERT_TRUE(source->next(&frame, milliseconds(1000)));
-    for (int x = 0; x < frame.gray.width; ++x) EXPECT_NEAR(frame.gray.at(x, 5), std::clamp(1.164 * (synthetic::luma_at(i, x, 5) - 16), 0.0, 255.0), 1);
+    for (int x = 0; x < frame.gray.width; ++x)
+      EXPECT_NEAR(frame.gray.at(x, 5), std::clamp(1.164 * (synthetic::luma_at(i, x, 5) - 16), 0.0, 255.0), 1);
     expect_depth(frame, i);
   }
   ASSERT_TRUE(record(folder / "infrared.oni", 10, "CAMLOC_SYNTHETIC_COLOR_FORMAT=0 CAMLOC_SYNTHETIC_INFRARED_FORMAT=203", false));

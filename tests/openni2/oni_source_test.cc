@@ -22,7 +22,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-Result<std::unique_ptr<FrameSource>> open_bytes(const TestFolder& folder, const std::string& bytes, const std::string& options = "", bool wants_color = false) {
+Result<std::unique_ptr<FrameSource>> open_bytes(const TestFolder& folder, const std::string& bytes,
+                                                const std::string& options = "", bool wants_color = false) {
   return open_frame_source("oni://" + folder.write("recording.oni", bytes) + options, {wants_color});
 }
 
@@ -86,7 +87,8 @@ TEST(OniSource, GivesColourWhenAsked) {
     EXPECT_EQ(pixel.r, 17 + 9 * p);
     EXPECT_EQ(pixel.g, 20 + 9 * p);
     EXPECT_EQ(pixel.b, 23 + 9 * p);
-    EXPECT_NEAR(played.frames[1].gray.pixels[static_cast<std::size_t>(p)], 0.299 * pixel.r + 0.587 * pixel.g + 0.114 * pixel.b, 1);
+    EXPECT_NEAR(played.frames[1].gray.pixels[static_cast<std::size_t>(p)], 0.299 * pixel.r + 0.587 * pixel.g + 0.114 * pixel.b,
+                1);
   }
 }
 
@@ -145,7 +147,8 @@ TEST(OniSource, LoopsAndSelects) {
   const std::int64_t length_ns = 4 * 33'000'000;
   for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_EQ(played.frames[i].sequence, i / 2 * 4 + i % 2 * 2);
-    EXPECT_EQ(played.frames[i].stamp_ns, static_cast<std::int64_t>(i / 2) * length_ns + static_cast<std::int64_t>(i % 2) * 66'000'000);
+    EXPECT_EQ(played.frames[i].stamp_ns,
+              static_cast<std::int64_t>(i / 2) * length_ns + static_cast<std::int64_t>(i % 2) * 66'000'000);
   }
 }
 
@@ -184,7 +187,9 @@ TEST(OniSource, BrokenFramesAreNamedAndPassedOver) {
 
 TEST(OniSource, RefusesWhatItCannotUse) {
   const TestFolder folder;
-  const auto code_of = [&folder](const std::string& bytes, const std::string& options = "") { return open_bytes(folder, bytes, options).status().code(); };
+  const auto code_of = [&folder](const std::string& bytes, const std::string& options = "") {
+    return open_bytes(folder, bytes, options).status().code();
+  };
   EXPECT_EQ(open_frame_source("oni:///nowhere.oni").status().code(), ErrorCode::kNotFound);
   EXPECT_EQ(open_frame_source("oni://" + folder.path()).status().code(), ErrorCode::kInvalid);
   EXPECT_EQ(open_frame_source("oni://").status().code(), ErrorCode::kInvalid);
@@ -194,7 +199,8 @@ TEST(OniSource, RefusesWhatItCannotUse) {
   EXPECT_EQ(code_of(OniWriter().end().bytes()), ErrorCode::kInvalid);
   EXPECT_EQ(code_of(OniWriter(2).end().bytes()), ErrorCode::kUnsupported);
   EXPECT_EQ(code_of(OniWriter().node(1, "Image", 3, "Im8z").bytes()), ErrorCode::kUnsupported);
-  EXPECT_EQ(code_of(OniWriter().node(1, "Depth", 2, "NONE").mode(1, 1, 1).frame(1, 0, 1, "xx").end().bytes()), ErrorCode::kUnsupported);
+  EXPECT_EQ(code_of(OniWriter().node(1, "Depth", 2, "NONE").mode(1, 1, 1).frame(1, 0, 1, "xx").end().bytes()),
+            ErrorCode::kUnsupported);
   EXPECT_EQ(code_of(OniWriter().node(1, "Image", 3, "NONE").frame(1, 0, 1, "xx").end().bytes()), ErrorCode::kCorrupt);  // no size
   EXPECT_EQ(code_of(small_recording(2).end().bytes(), "?speed=-1"), ErrorCode::kInvalid);
   EXPECT_EQ(code_of(small_recording(2).end().bytes(), "?loop=2"), ErrorCode::kInvalid);
@@ -243,7 +249,11 @@ TEST(OniSource, ReadsJpegThatTheDeviceDelivered) {
   ASSERT_TRUE(write_jpeg(folder / "image.jpg", smooth_color(32, 24)));
   const std::vector<std::uint8_t> jpeg = bytes_of(folder / "image.jpg");
   OniWriter writer;
-  writer.node(2, "Image", 3, "NONE").mode(2, 32, 24).number(2, "oniPixelFormat", 204).frame(2, 0, 1, std::string(jpeg.begin(), jpeg.end())).end();
+  writer.node(2, "Image", 3, "NONE")
+      .mode(2, 32, 24)
+      .number(2, "oniPixelFormat", 204)
+      .frame(2, 0, 1, std::string(jpeg.begin(), jpeg.end()))
+      .end();
   auto source = open_bytes(folder, writer.bytes());
   ASSERT_TRUE(source) << source.status().message();
   EXPECT_EQ(play(source->get()).frames.size(), 1U);
@@ -255,14 +265,18 @@ TEST(OniSource, ReadsJpegColour) {
   ASSERT_TRUE(write_jpeg(folder / "image.jpg", image));
   const std::vector<std::uint8_t> jpeg = bytes_of(folder / "image.jpg");
   OniWriter writer;
-  writer.node(2, "Image", 3, "JPEG").mode(2, 32, 24).number(2, "oniPixelFormat", 200).frame(2, 0, 1, std::string(jpeg.begin(), jpeg.end()));
+  writer.node(2, "Image", 3, "JPEG")
+      .mode(2, 32, 24)
+      .number(2, "oniPixelFormat", 200)
+      .frame(2, 0, 1, std::string(jpeg.begin(), jpeg.end()));
   writer.frame(2, 33'000, 2, std::string(jpeg.begin(), jpeg.begin() + 300)).end();
   auto source = open_bytes(folder, writer.bytes(), "", true);
   ASSERT_TRUE(source) << source.status().message();
   const Played played = play(source->get());
   ASSERT_EQ(played.frames.size(), 1U);
   EXPECT_EQ(played.num_corrupt, 1);
-  for (std::size_t i = 0; i < played.frames[0].color.pixels.size(); ++i) EXPECT_NEAR(played.frames[0].color.pixels[i].g, image.pixels[3 * i + 1], 12);
+  for (std::size_t i = 0; i < played.frames[0].color.pixels.size(); ++i)
+    EXPECT_NEAR(played.frames[0].color.pixels[i].g, image.pixels[3 * i + 1], 12);
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ thread_local std::uint64_t allocation_count = 0;
 
 void count(void* caller) {
   Dl_info module{};
-  const bool is_library = ::dladdr(caller, &module) != 0 && module.dli_fname != nullptr && std::strstr(module.dli_fname, "libOpenNI2") != nullptr;
+  const bool is_library =
+      ::dladdr(caller, &module) != 0 && module.dli_fname != nullptr && std::strstr(module.dli_fname, "libOpenNI2") != nullptr;
   if (!is_library) ++allocation_count;
 }
 }  // namespace

@@ -37,10 +37,10 @@ TEST(OniDepthCodec, RefusesWhatDoesNotFit) {
   const auto code_of = [&depth](DepthCodec codec, const Bytes& bytes) { return decode_depth_codec(codec, bytes, depth).code(); };
   EXPECT_EQ(code_of(DepthCodec::k16z, {}), ErrorCode::kCorrupt);
   EXPECT_EQ(code_of(DepthCodec::k16z, {1}), ErrorCode::kCorrupt);
-  EXPECT_EQ(code_of(DepthCodec::k16z, {1, 0}), ErrorCode::kCorrupt);                // too few pixels
-  EXPECT_EQ(code_of(DepthCodec::k16z, {1, 0, 0xE2}), ErrorCode::kCorrupt);          // too many
-  EXPECT_EQ(code_of(DepthCodec::k16z, {1, 0, 0x66, 0xFF, 1}), ErrorCode::kCorrupt); // half a value
-  EXPECT_EQ(code_of(DepthCodec::k16zTable, {5, 0, 1, 0}), ErrorCode::kCorrupt);     // table beyond the end
+  EXPECT_EQ(code_of(DepthCodec::k16z, {1, 0}), ErrorCode::kCorrupt);                         // too few pixels
+  EXPECT_EQ(code_of(DepthCodec::k16z, {1, 0, 0xE2}), ErrorCode::kCorrupt);                   // too many
+  EXPECT_EQ(code_of(DepthCodec::k16z, {1, 0, 0x66, 0xFF, 1}), ErrorCode::kCorrupt);          // half a value
+  EXPECT_EQ(code_of(DepthCodec::k16zTable, {5, 0, 1, 0}), ErrorCode::kCorrupt);              // table beyond the end
   EXPECT_EQ(code_of(DepthCodec::k16zTable, {1, 0, 9, 0, 0, 0, 0x56}), ErrorCode::kCorrupt);  // index beyond the table
   EXPECT_EQ(code_of(DepthCodec::k16zTable, {0, 0, 0, 0, 0x66}), ErrorCode::kCorrupt);
 }
@@ -59,10 +59,12 @@ TEST(OniDepthCodec, SurvivesRandomBytes) {
 TEST(OniPixels, YuvAndRgbGiveTheSameGreyAndColour) {
   // A colour of limited range BT.601 by the standard's own formula.
   for (const auto& [y, u, v] : {std::tuple{16, 128, 128}, {235, 128, 128}, {81, 90, 240}, {145, 54, 34}, {41, 240, 110}}) {
-    const double r = 1.164 * (y - 16) + 1.596 * (v - 128), g = 1.164 * (y - 16) - 0.392 * (u - 128) - 0.813 * (v - 128), b = 1.164 * (y - 16) + 2.017 * (u - 128);
+    const double r = 1.164 * (y - 16) + 1.596 * (v - 128), g = 1.164 * (y - 16) - 0.392 * (u - 128) - 0.813 * (v - 128),
+                 b = 1.164 * (y - 16) + 2.017 * (u - 128);
     const auto byte = [](int value) { return static_cast<std::uint8_t>(value); };
     const Bytes uyvy{byte(u), byte(y), byte(v), byte(y)}, yuyv{byte(y), byte(u), byte(y), byte(v)};
-    for (const RawImage& image : {RawImage{uyvy, 2, 1, 4, PixelLayout::kUyvy, false}, RawImage{yuyv, 2, 1, 4, PixelLayout::kYuyv, false}}) {
+    for (const RawImage& image :
+         {RawImage{uyvy, 2, 1, 4, PixelLayout::kUyvy, false}, RawImage{yuyv, 2, 1, 4, PixelLayout::kYuyv, false}}) {
       Image<Bgr> color;
       Image<std::uint8_t> gray;
       ASSERT_TRUE(to_bgr(image, &color));
@@ -96,9 +98,18 @@ TEST(OniPixels, InfraredKeepsItsEightHighestBits) {
 TEST(OniPixels, NeverReadsBeyondTheData) {
   const Bytes bytes(100);
   Image<std::uint8_t> gray;
-  for (const auto& [width, height, stride] : {std::tuple{10, 11, std::size_t{10}}, {10, 10, std::size_t{11}}, {10, 10, std::size_t{9}}, {0, 1, std::size_t{1}}, {1, 0, std::size_t{1}},
-                                              {-1, 10, std::size_t{10}}, {10, 2, ~std::size_t{0}}, {10, 1 << 30, std::size_t{10}}, {1, 2, std::size_t{0}}, {101, 1, std::size_t{101}}}) {
-    EXPECT_EQ(to_gray({bytes, width, height, stride, PixelLayout::kGray8, false}, &gray).code(), ErrorCode::kCorrupt) << width << "x" << height << " " << stride;
+  for (const auto& [width, height, stride] : {std::tuple{10, 11, std::size_t{10}},
+                                              {10, 10, std::size_t{11}},
+                                              {10, 10, std::size_t{9}},
+                                              {0, 1, std::size_t{1}},
+                                              {1, 0, std::size_t{1}},
+                                              {-1, 10, std::size_t{10}},
+                                              {10, 2, ~std::size_t{0}},
+                                              {10, 1 << 30, std::size_t{10}},
+                                              {1, 2, std::size_t{0}},
+                                              {101, 1, std::size_t{101}}}) {
+    EXPECT_EQ(to_gray({bytes, width, height, stride, PixelLayout::kGray8, false}, &gray).code(), ErrorCode::kCorrupt)
+        << width << "x" << height << " " << stride;
   }
   EXPECT_EQ(to_gray({bytes, 1, 1, 0, PixelLayout::kJpeg, false}, &gray).code(), ErrorCode::kCorrupt);
   EXPECT_TRUE(to_gray({bytes, 10, 10, 10, PixelLayout::kGray8, false}, &gray));
@@ -107,7 +118,8 @@ TEST(OniPixels, NeverReadsBeyondTheData) {
 }
 
 TEST(OniModes, ChoosesTheUsualMode) {
-  const std::vector<VideoMode> offered{{101, 640, 480, 30}, {100, 320, 240, 60}, {100, 640, 480, 30}, {102, 640, 480, 30}, {200, 640, 480, 30}, {100, 1280, 1024, 15}};
+  const std::vector<VideoMode> offered{{101, 640, 480, 30}, {100, 320, 240, 60}, {100, 640, 480, 30},
+                                       {102, 640, 480, 30}, {200, 640, 480, 30}, {100, 1280, 1024, 15}};
   const std::optional<VideoMode> mode = choose_mode(offered, StreamUse::kDepth, {});
   ASSERT_TRUE(mode);
   EXPECT_EQ(describe(*mode), "640x480@30 in 1 mm");
