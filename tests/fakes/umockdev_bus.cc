@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kRootHub = "/sys/devices/pci0000:00/0000:00:14.0/usb1";
 
-/// What the ioctl handler of one device file needs; shared with sessions, which may outlive the file.
+/// What the ioctl handler of one device file needs; belongs to it, and it lives while clients have the file open.
 struct Port {
   UsbfsHost* host = nullptr;
   UsbDeviceId device = UsbDeviceId::kCamera;
@@ -174,7 +174,13 @@ gboolean handle_ioctl(UMockdevIoctlBase* base, UMockdevIoctlClient* client) {
 
 }  // namespace
 
+static void finalize_handler(GObject* object) {
+  delete reinterpret_cast<CamlocUsbHandler*>(object)->port;
+  G_OBJECT_CLASS(camloc_usb_handler_parent_class)->finalize(object);
+}
+
 static void camloc_usb_handler_class_init(CamlocUsbHandlerClass* type) {
+  reinterpret_cast<GObjectClass*>(type)->finalize = finalize_handler;
   type->parent.handle_ioctl = handle_ioctl;
   type->parent.client_connected = on_connected;
 }
@@ -194,8 +200,6 @@ struct UmockdevBus::Impl {
   bool has_motor = false;
   UMockdevTestbed* testbed = nullptr;
   std::vector<Device> plugged;
-  std::vector<std::unique_ptr<Port>> ports;   ///< all there ever were: a handler may still be at work
-  std::vector<CamlocUsbHandler*> old_handlers;
   int next_number = 2;
 
   [[nodiscard]] Status add(const std::string& path, int number, const UsbDescriptors& descriptors);
@@ -217,9 +221,8 @@ Status UmockdevBus::Impl::attach(Device* device, UsbDeviceId id) {
   auto fifo = ReadyFifo::create(std::string(root) + file);
   g_free(root);
   if (!fifo) return fifo.status();
-  ports.push_back(std::make_unique<Port>(Port{host, id, file, std::make_shared<ReadyFifo>(std::move(*fifo))}));
   device->handler = static_cast<CamlocUsbHandler*>(g_object_new(camloc_usb_handler_get_type(), nullptr));
-  device->handler->port = ports.back().get();
+  device->handler->port = new Port{host, id, file, std::make_shared<ReadyFifo>(std::move(*fifo))};
   GError* error = nullptr;
   if (umockdev_testbed_attach_ioctl(testbed, file.c_str(), &device->handler->parent, &error) != 0) return {};
   const Status status(ErrorCode::kInvalid, file + ": umockdev takes no ioctls for it: " + error->message);
@@ -261,7 +264,6 @@ UmockdevBus::~UmockdevBus() {
     umockdev_testbed_detach_ioctl(impl_->testbed, device_file_of(device.number).c_str(), nullptr);
     g_object_unref(device.handler);
   }
-  for (CamlocUsbHandler* const handler : impl_->old_handlers) g_object_unref(handler);
   g_object_unref(impl_->testbed);
 }
 
@@ -289,7 +291,9 @@ Status UmockdevBus::unplug() {
     g_free(root);
     umockdev_testbed_uevent(impl_->testbed, device.path.c_str(), "remove");
     umockdev_testbed_remove_device(impl_->testbed, device.path.c_str());
-    if (device.handler != nullptr) impl_->old_handlers.push_back(device.handler);
+    if (device.handler == nullptr) continue;
+    umockdev_testbed_detach_ioctl(impl_->testbed, file.c_str(), nullptr);  // no new clients; numbers come again
+    g_object_unref(device.handler);
   }
   return {};
 }
