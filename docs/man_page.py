@@ -135,7 +135,8 @@ def format_sources(lister):
     out = ""
     for line in subprocess.run([lister], capture_output=True, text=True, check=True, timeout=60).stdout.splitlines():
         usage, _, text = line.split("\t")[1].partition("  ")
-        out += f".TP\n{bold(usage)}\n{escape(capitalized(text))}.\n"
+        breakable = re.sub(r"([?&])", r"\\:\1", bold(usage))  # a long URL may be broken before its options
+        out += f".TP\n{breakable}\n{escape(capitalized(text))}.\n"
     return out
 
 
