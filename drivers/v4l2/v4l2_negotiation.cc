@@ -28,7 +28,7 @@ struct Choice {
   const V4l2PixelFormat* format = nullptr;
   int width = 0, height = 0;
   double rate_hz = 0;  ///< 0: not told
-  std::tuple<bool, int, std::ptrdiff_t> cost;
+  std::tuple<bool, int, unsigned, std::ptrdiff_t> cost;
 };
 
 std::string wish_text(const V4l2Wish& wish) {
@@ -65,7 +65,10 @@ bool size_satisfies(const V4l2Wish& wish, int width, int height) {
   return (!wish.is_width_required || width == wish.width) && (!wish.is_height_required || height == wish.height);
 }
 
-/// The cheapest way to take one size offer, where it fulfils what is required. Cost: too slow, far from the size, format.
+/// Where a driver lists no rates, what takes less of the bus is what comes faster: a Kinect sends Bayer pixels at 30 Hz, UYVY at 15.
+unsigned bits_on_the_bus(const V4l2PixelFormat& format) { return format.row_bits == 0 ? 16 : format.row_bits; }
+
+/// The cheapest way to take one size offer, where it fulfils what is required. Cost: too slow, far from the size, then format.
 std::optional<Choice> consider(const V4l2Device& device, const V4l2Wish& wish, const V4l2PixelFormat& format, const V4l2SizeOffer& offer) {
   const V4l2SizeRange& s = offer.size;
   Choice choice;
@@ -83,7 +86,7 @@ std::optional<Choice> consider(const V4l2Device& device, const V4l2Wish& wish, c
   const std::ptrdiff_t rank = &format - v4l2_pixel_formats().data() + (is_colorless ? 1000 : 0);
   // For depth the sure formats are at the end of the table.
   choice.cost = {is_slow, std::abs(choice.width - wish.width) + std::abs(choice.height - wish.height),
-                 wish.role == V4l2Role::kDepth ? -rank : rank};
+                 is_told || wish.role == V4l2Role::kDepth ? 0 : bits_on_the_bus(format), wish.role == V4l2Role::kDepth ? -rank : rank};
   return choice;
 }
 

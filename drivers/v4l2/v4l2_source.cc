@@ -139,7 +139,7 @@ class V4l2Source final : public FrameSource {
     switch (channel->stream->take(&frame)) {
       case V4l2Stream::Take::kFrame: channel->pending = frame; return Status::ok();
       case V4l2Stream::Take::kGone: return channel->stream->problem();
-      case V4l2Stream::Take::kDamaged: return {ErrorCode::kCorrupt, channel->stream->device().path() + ": a frame came broken or short"};
+      case V4l2Stream::Take::kDamaged: return channel->stream->damage();
       case V4l2Stream::Take::kNothing: break;
     }
     if (!channel->has_error) return Status::ok();

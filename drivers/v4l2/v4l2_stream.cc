@@ -162,8 +162,8 @@ V4l2Stream::Take V4l2Stream::take(V4l2Frame* frame) {
   frame->planes = buffers_[index].planes;
   count_exposure(request.buffer.sequence);
   frame->exposure = exposure_;
-  const bool is_whole = (request.buffer.flags & V4L2_BUF_FLAG_ERROR) == 0 && read_planes(request.buffer, &frame->planes);
-  if (!is_whole) {
+  is_marked_ = (request.buffer.flags & V4L2_BUF_FLAG_ERROR) != 0;
+  if (is_marked_ || !read_planes(request.buffer, &frame->planes)) {
     ++num_damaged_;
     give_back(*frame);
     return Take::kDamaged;
@@ -181,15 +181,23 @@ Status V4l2Stream::problem() const {
   return {ErrorCode::kUnavailable, device_.path() + ": the camera is gone (" + errno_text(error_) + ")"};
 }
 
+Status V4l2Stream::damage() const {
+  if (is_marked_) return {ErrorCode::kCorrupt, device_.path() + ": the driver marked a frame as broken"};
+  return {ErrorCode::kCorrupt, device_.path() + ": a frame of " + std::to_string(damaged_bytes_) + " bytes where there should be " +
+                                   std::to_string(damaged_needed_)};
+}
+
 // Narrows `planes` to the bytes of this frame; false where some are missing or more are claimed than there is room for.
-bool V4l2Stream::read_planes(const v4l2_buffer& buffer, V4l2Planes* planes) const {
+bool V4l2Stream::read_planes(const v4l2_buffer& buffer, V4l2Planes* planes) {
   for (unsigned plane = 0; plane < layout_.format->num_planes; ++plane) {
     std::span<const std::uint8_t>& bytes = (*planes)[plane];
     const std::size_t end = device_.is_multiplanar() ? buffer.m.planes[plane].bytesused : buffer.bytesused;
     const std::size_t begin = device_.is_multiplanar() ? buffer.m.planes[plane].data_offset : 0;
-    if (end > bytes.size() || begin >= end) return false;
-    bytes = bytes.subspan(begin, end - begin);
-    if (bytes.size() < min_plane_bytes(*layout_.format, plane, layout_.width, layout_.height, layout_.stride_bytes[plane])) return false;
+    const std::size_t needed = min_plane_bytes(*layout_.format, plane, layout_.width, layout_.height, layout_.stride_bytes[plane]);
+    damaged_bytes_ = end - std::min(begin, end);
+    damaged_needed_ = std::max<std::size_t>(needed, 1);
+    if (end > bytes.size() || damaged_bytes_ < damaged_needed_) return false;
+    bytes = bytes.subspan(begin, damaged_bytes_);
   }
   return true;
 }

@@ -56,6 +56,8 @@ class V4l2Stream {
   [[nodiscard]] Take take(V4l2Frame* frame);
   void give_back(const V4l2Frame& frame);
   [[nodiscard]] Status problem() const;
+  /// What was wrong with the last damaged frame (kCorrupt).
+  [[nodiscard]] Status damage() const;
 
   [[nodiscard]] const V4l2Device& device() const { return device_; }
   [[nodiscard]] const V4l2ImageLayout& layout() const { return layout_; }
@@ -76,7 +78,7 @@ class V4l2Stream {
   [[nodiscard]] Status map_buffer(unsigned index, Buffer* buffer);
   void unmap_buffers();
   [[nodiscard]] int queue(unsigned index);
-  [[nodiscard]] bool read_planes(const v4l2_buffer& buffer, V4l2Planes* planes) const;
+  [[nodiscard]] bool read_planes(const v4l2_buffer& buffer, V4l2Planes* planes);
   [[nodiscard]] std::int64_t stamp(const v4l2_buffer& buffer);
   void count_exposure(std::uint32_t sequence);
 
@@ -91,6 +93,9 @@ class V4l2Stream {
   std::uint64_t exposure_ = 0;
   std::uint64_t num_lost_ = 0;
   std::uint64_t num_damaged_ = 0;
+  bool is_marked_ = false;          ///< the last damaged frame, by the driver
+  std::size_t damaged_bytes_ = 0;   ///< what else there was of it
+  std::size_t damaged_needed_ = 0;  ///< and should have been
 };
 
 }  // namespace camloc

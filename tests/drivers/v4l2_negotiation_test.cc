@@ -106,6 +106,12 @@ TEST_F(V4l2Negotiation, DriversThatListNeitherSizesNorRates) {
   EXPECT_EQ(agreed(rated({}, 25)), "YUYV 640x480 25");
 }
 
+TEST_F(V4l2Negotiation, WithoutRatesFewerBytesAreFaster) {
+  node_.faults.leaves_out_rates = true;
+  node_.formats = {{V4L2_PIX_FMT_Y10BPACK, {{640, 488, {}}}}, {V4L2_PIX_FMT_SGRBG8, {{640, 480, {}}}}, {V4L2_PIX_FMT_UYVY, {{640, 480, {}}}}};
+  EXPECT_EQ(agreed({}), "GRBG 640x480 0") << "as the kernel's driver of the Kinect lists them";
+}
+
 TEST_F(V4l2Negotiation, SaysWhatIsOffered) {
   const Status status = refusal(rated(sized(800, 600), 30));
   EXPECT_EQ(status.code(), ErrorCode::kUnsupported);

@@ -243,6 +243,8 @@ TEST_F(V4l2Source, DamagedFramesAreCorruptAndCounted) {
     while (next() == ErrorCode::kOk && ++num_turns < 10) {
     }
     EXPECT_EQ(next(), ErrorCode::kCorrupt);
+    const std::string what = node.faults.bytesused ? "a frame of " + std::to_string(*node.faults.bytesused) + " bytes where there should be 38400" : "marked a frame";
+    EXPECT_NE(problem_.find(what), std::string::npos) << problem_;
     node.faults.bytesused.reset();
     node.faults.buffer_flags = 0;
     while (source_->health().frames_incomplete == num_broken || next() == ErrorCode::kCorrupt) {
