@@ -9,10 +9,10 @@
 namespace camloc {
 namespace {
 
-struct Candidate {
+struct CandidateView {
   std::uint32_t gain;
   std::uint32_t view;
-  bool operator<(const Candidate& other) const { return gain != other.gain ? gain < other.gain : view > other.view; }
+  bool operator<(const CandidateView& other) const { return gain != other.gain ? gain < other.gain : view > other.view; }
 };
 
 std::uint32_t gain_of(const std::vector<std::uint32_t>& items, const std::vector<std::uint32_t>& times_covered) {
@@ -24,11 +24,11 @@ std::uint32_t gain_of(const std::vector<std::uint32_t>& items, const std::vector
 // (Minoux, "Accelerated greedy algorithms for maximizing submodular set functions", 1978).
 std::vector<std::uint32_t> take_views(std::span<const std::vector<std::uint32_t>> items_of_view, std::uint32_t min_gain,
                                       std::vector<std::uint32_t>* times_covered) {
-  std::priority_queue<Candidate> queue;
+  std::priority_queue<CandidateView> queue;
   for (std::uint32_t v = 0; v < items_of_view.size(); ++v) queue.push({static_cast<std::uint32_t>(items_of_view[v].size()), v});
   std::vector<std::uint32_t> taken;
   while (!queue.empty()) {
-    Candidate top = queue.top();
+    CandidateView top = queue.top();
     queue.pop();
     top.gain = gain_of(items_of_view[top.view], *times_covered);
     if (top.gain < std::max(min_gain, 1U)) continue;

@@ -9,10 +9,10 @@
 namespace camloc {
 namespace {
 
-struct Candidate {
+struct CandidateLandmark {
   double gain;
   std::uint32_t landmark;
-  bool operator<(const Candidate& other) const { return gain != other.gain ? gain < other.gain : landmark > other.landmark; }
+  bool operator<(const CandidateLandmark& other) const { return gain != other.gain ? gain < other.gain : landmark > other.landmark; }
 };
 
 class Selector {
@@ -36,12 +36,12 @@ class Selector {
 
   /// Greedy over the landmarks with at least `min_observations` that some view with fewer than `wanted` still needs.
   void take(std::uint32_t min_observations, std::uint32_t wanted, std::uint32_t max_landmarks) {
-    std::priority_queue<Candidate> queue;
+    std::priority_queue<CandidateLandmark> queue;
     for (std::uint32_t i = 0; i < is_kept_.size(); ++i) {
       if (is_kept_[i] == 0 && num_observations(i) >= min_observations) queue.push({gain(i), i});
     }
     while (!queue.empty() && (max_landmarks == 0 || num_kept_ < max_landmarks)) {
-      Candidate top = queue.top();
+      CandidateLandmark top = queue.top();
       queue.pop();
       if (!is_needed(top.landmark, wanted)) continue;  // counts only grow: never needed again
       top.gain = gain(top.landmark);

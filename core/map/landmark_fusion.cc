@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/base/mix_bits.h"
 #include "core/map/landmark_fusion.h"
 
 #include <Eigen/LU>
@@ -38,13 +39,6 @@ int distance_to_any(const std::vector<Descriptor>& appearances, const Descriptor
 }
 
 // Mixing function of SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
-std::uint64_t mix(std::uint64_t x) {
-  x += 0x9E3779B97F4A7C15U;
-  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9U;
-  x = (x ^ (x >> 27)) * 0x94D049BB133111EBU;
-  return x ^ (x >> 31);
-}
-
 }  // namespace
 
 LandmarkFusion::LandmarkFusion(const Intrinsics& color, const DepthNoise& depth_noise, const FusionOptions& options)
@@ -266,7 +260,7 @@ void LandmarkFusion::add_appearance(const Keypoint& keypoint, const Descriptor& 
     return;
   }
   const std::uint64_t slot =
-      mix((static_cast<std::uint64_t>(index) << 32) | landmark.num_observations) % landmark.num_observations;
+      mix_bits((static_cast<std::uint64_t>(index) << 32) | landmark.num_observations) % landmark.num_observations;
   if (slot < kMaxSamples) landmark.samples[slot] = {descriptor, keypoint.angle_rad};
 }
 

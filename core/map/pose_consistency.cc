@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+#include "core/base/mix_bits.h"
 #include "core/map/pose_consistency.h"
 
 #include <algorithm>
@@ -18,13 +19,6 @@ namespace {
 constexpr double kMinInlierRatio = 0.3;
 
 // Mixing function of SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
-std::uint64_t mix(std::uint64_t x) {
-  x += 0x9E3779B97F4A7C15U;
-  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9U;
-  x = (x ^ (x >> 27)) * 0x94D049BB133111EBU;
-  return x ^ (x >> 31);
-}
-
 /// Registers one view to another: the depth points of `from` are the map, the pixels of `to` are the query.
 class Registration {
  public:
@@ -121,7 +115,7 @@ std::vector<PoseConsistency::Pair> PoseConsistency::candidate_pairs() const {
       if ((j - i) * stride_ < gap || distance < options_.min_distance_m || distance > options_.max_distance_m) continue;
       const Eigen::Vector3d axis_i = views_[i].T_map_camera.rotation * Eigen::Vector3d::UnitZ();
       const Eigen::Vector3d axis_j = views_[j].T_map_camera.rotation * Eigen::Vector3d::UnitZ();
-      if (axis_i.dot(axis_j) >= std::cos(options_.max_view_angle_rad)) pairs.push_back({mix(i * views_.size() + j), i, j});
+      if (axis_i.dot(axis_j) >= std::cos(options_.max_view_angle_rad)) pairs.push_back({mix_bits(i * views_.size() + j), i, j});
     }
   }
   std::sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.order < b.order; });

@@ -9,20 +9,19 @@
 #include <map>
 #include <set>
 
+#include "core/base/mix_bits.h"
 #include "core/features/hamming.h"
 
 namespace camloc {
 namespace {
 
-// SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
 class SplitMix {
  public:
   explicit SplitMix(std::uint64_t seed) : state_(seed) {}
   std::uint64_t next() {
-    std::uint64_t x = (state_ += 0x9E3779B97F4A7C15U);
-    x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9U;
-    x = (x ^ (x >> 27)) * 0x94D049BB133111EBU;
-    return x ^ (x >> 31);
+    const std::uint64_t result = mix_bits(state_);
+    state_ += 0x9E3779B97F4A7C15U;
+    return result;
   }
 
  private:
