@@ -78,6 +78,7 @@ class Machine:
     def __init__(self, options):
         self._work = pathlib.Path(options.work)
         self._log = open(self._work / "fake.log", "ab")
+        self._report = open(self._work / "report", "w", encoding="utf-8")
         self._patience = options.patience
         self._fake = FakeCamera(options.fake, options.fake_arguments, self._work, self._log)
         command = ["qemu-system-x86_64", "-machine", "q35", "-accel", "tcg,thread=multi", "-cpu", "max", "-smp", "2", "-m", "1024",
@@ -119,6 +120,7 @@ class Machine:
                     self._process.stdin.flush()
                     continue
                 print(line, flush=True)
+                print(line, file=self._report, flush=True)
                 is_over = is_over or line == "# over"
                 if is_over:
                     break
@@ -135,6 +137,7 @@ class Machine:
             self._process.wait()
         self._fake.close()
         self._log.close()
+        self._report.close()
 
 
 def main():

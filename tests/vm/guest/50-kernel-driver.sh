@@ -15,7 +15,8 @@ within 20 is_active
 say "plugging in started the service"
 
 systemctl stop camlocd
-v4l2-ctl -d "$(video_node kinect)" --stream-mmap --stream-count=15 --stream-to="$work/frames" >"$work/stream" 2>&1 || fail "$(tail -n 3 "$work/stream")"
+v4l2-ctl -d "$(video_node kinect)" --set-fmt-video=width=640,height=480,pixelformat=GRBG \
+  --stream-mmap --stream-count=15 --stream-to="$work/frames" >"$work/stream" 2>&1 || fail "$(tail -n 3 "$work/stream")"
 size=$(stat -c %s "$work/frames")
 [[ $size -eq $((15 * 640 * 480)) ]] || fail "$size bytes in 15 frames"
 host served video "$(tail -c $((640 * 480)) "$work/frames" | md5sum | cut -c1-32)"
