@@ -18,6 +18,7 @@ void add_monitor_command(CLI::App& app, int& exit_code);
 void add_ctl_command(CLI::App& app, int& exit_code);
 void add_doctor_command(CLI::App& app, int& exit_code);
 void add_frames_command(CLI::App& app, int& exit_code);
+void add_camera_command(CLI::App& app, int& exit_code);   ///< list, show, import; calibrate is the program camloc-camera
 void add_record_command(CLI::App& app, int& exit_code);
 
 /// Prints "camloc: <message>" on stderr; the exit code that belongs to the error.

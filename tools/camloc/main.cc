@@ -26,21 +26,29 @@ constexpr std::array kCommands{
     Command{"localize", camloc::tools::add_localize_command},
     Command{"eval", camloc::tools::add_eval_command},
     Command{"map", camloc::tools::add_map_command},
+    Command{"camera", camloc::tools::add_camera_command},
     Command{"record", camloc::tools::add_record_command},
     Command{"monitor", camloc::tools::add_monitor_command},
     Command{"ctl", camloc::tools::add_ctl_command},
     Command{"doctor", camloc::tools::add_doctor_command},
     Command{"frames", camloc::tools::add_frames_command},
 };
-/// Sub-commands of `camloc map` that are built in, and those of the program camloc-map.
-const std::vector<std::string> kMapCommands{"info", "verify"};
-const std::vector<std::string> kMapProgramCommands{"build", "eval", "export", "georef", "merge", "view"};
+/// Commands of which a part is built in and the rest is in the program camloc-NAME.
+struct SplitCommand {
+  const char* name;
+  std::vector<std::string> built_in, in_program;
+};
+const std::vector<SplitCommand> kSplitCommands{
+    {"map", {"info", "verify"}, {"build", "eval", "export", "georef", "merge", "view"}},
+    {"camera", {"list", "show", "import"}, {"calibrate"}},
+};
 const char* const kProgramsHelp =
     "Programs of the package camloc-tools, run as `camloc NAME`:\n"
     "  map build                   Build a map from a recorded walk\n"
     "  map view, map export        See a map; write it for other viewers\n"
     "  map georef, map merge       Put a map into site coordinates; join walks\n"
     "  map eval                    Compare a map with a laser scan\n"
+    "  camera calibrate            Find a camera's calibration with a flat board\n"
     "  bench                       Time and accuracy, beside plain OpenCV calls\n"
     "  sim                         Write a synthetic building with its walks";
 
@@ -55,31 +63,40 @@ bool is_built_in(const CLI::App& app, const std::string& name) {
   return false;
 }
 
+const SplitCommand* find_split(const std::string& name) {
+  const auto found = std::find_if(kSplitCommands.begin(), kSplitCommands.end(), [&name](const SplitCommand& split) { return name == split.name; });
+  return found == kSplitCommands.end() ? nullptr : &*found;
+}
+
 /// Whether `camloc arguments...` is a matter of the program camloc-<arguments[0]>.
 bool is_external(const CLI::App& app, const std::vector<std::string>& arguments) {
   if (arguments.empty() || arguments[0].empty() || arguments[0][0] == '-') return false;
-  if (arguments[0] != "map") return !is_built_in(app, arguments[0]);
-  if (!is_built_in(app, "map")) return true;
-  return arguments.size() > 1 && arguments[1][0] != '-' && !is_one_of(arguments[1], kMapCommands);
+  const SplitCommand* split = find_split(arguments[0]);
+  if (split == nullptr) return !is_built_in(app, arguments[0]);
+  return arguments.size() > 1 && arguments[1][0] != '-' && !is_one_of(arguments[1], split->built_in);
+}
+
+/// Names the closest sub-command of a split command.
+int report_unknown(const SplitCommand& split, const std::string& word) {
+  std::vector<std::string> known = split.built_in;
+  known.insert(known.end(), split.in_program.begin(), split.in_program.end());
+  const std::string name = split.name, closest = camloc::tools::closest_word(word, known);
+  camloc::tools::print_error("camloc", "no command '" + name + " " + word + "'; " +
+                                           (closest.empty() ? "see 'camloc " + name + " --help'" : "did you mean '" + name + " " + closest + "'?"));
+  return 2;
 }
 
 /// Becomes camloc-X; returns 2 where there is none.
 int run_external(const CLI::App& app, const std::vector<std::string>& arguments) {
+  const SplitCommand* split = find_split(arguments[0]);
+  if (split != nullptr && arguments.size() > 1 && !is_one_of(arguments[1], split->in_program)) return report_unknown(*split, arguments[1]);
   const auto program = find_program("camloc-" + arguments[0]);
-  if (arguments[0] == "map" && arguments.size() > 1 && !is_one_of(arguments[1], kMapProgramCommands)) {
-    std::vector<std::string> known = kMapCommands;
-    known.insert(known.end(), kMapProgramCommands.begin(), kMapProgramCommands.end());
-    const std::string closest = camloc::tools::closest_word(arguments[1], known);
-    camloc::tools::print_error("camloc", "no command 'map " + arguments[1] + "'; " +
-                                             (closest.empty() ? "see 'camloc map --help'" : "did you mean 'map " + closest + "'?"));
-    return 2;
-  }
   if (program) return camloc::tools::report(exec_program(*program, {arguments.begin() + 1, arguments.end()}));
 
-  std::vector<std::string> known{"map", "sim"};
+  std::vector<std::string> known{"bench", "sim"};
   for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
   std::string hint = "see 'camloc --help'";
-  if (arguments[0] == "map" || arguments[0] == "sim") {
+  if (split != nullptr || arguments[0] == "bench" || arguments[0] == "sim") {
     hint = "install the package camloc-tools";
   } else if (const std::string closest = camloc::tools::closest_word(arguments[0], known); !closest.empty()) {
     hint = "did you mean '" + closest + "'?";
