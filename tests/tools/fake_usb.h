@@ -17,7 +17,7 @@ namespace camloc::tools {
 struct FakeUsbDevice {
   std::uint16_t vendor = 0, product = 0;
   int address = 1;
-  std::string serial, driver;
+  std::string serial = "", driver = "";
   std::string speed = "480";
 };
 

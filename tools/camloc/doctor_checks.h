@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What `camloc doctor` looks at, one function a cause. Each is told what it needs (folders, answers of other programs), so that
+// every outcome can be tested; none changes anything.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/openni2/installation.h"
+#include "tools/camloc/multicast_route.h"
+#include "tools/camloc/control_client.h"
+#include "tools/camloc/usb_devices.h"
+
+namespace camloc::tools {
+
+enum class Level { kOk, kWarning, kFailure };
+
+struct Check {
+  std::string name;
+  Level level = Level::kOk;
+  std::string detail;
+  std::string advice;  ///< what to do, with the command where there is one; empty when nothing
+};
+
+/// What camlocd would run with: its configuration, then the command line of doctor.
+struct Settings {
+  std::string map_path, source_url, camera_path;
+  std::string lcm_url = kDefaultLcmUrl;
+  std::string socket_path = kDefaultControlSocket;
+
+  [[nodiscard]] std::string scheme() const;  ///< "kinect" of kinect://; "replay" of a bare path
+};
+
+/// The answer of a running camlocd to "status"; it owns the camera then.
+using DaemonAnswer = std::optional<nlohmann::ordered_json>;
+
+// doctor_setup.cc: what was configured
+[[nodiscard]] Check check_config(const std::string& path, Settings* settings);
+[[nodiscard]] Check check_map(const std::string& path);
+struct FrameSize {
+  int width = 0, height = 0;
+};
+/// Opens the source and waits for a frame, unless a daemon has it. `size`: of the frame's image, where there was one.
+[[nodiscard]] Check check_source(const std::string& url, const DaemonAnswer& daemon, std::optional<FrameSize>* size);
+[[nodiscard]] Check check_calibration(const std::string& path, const DaemonAnswer& daemon, const std::optional<FrameSize>& size);
+
+// doctor_usb.cc: what is plugged in; `scheme` is that of the source
+[[nodiscard]] Check check_usb_presence(const std::vector<UsbDevice>& devices, const std::string& scheme);
+/// Whether camlocd may open the cameras: `service_group` is the group of the devices that it is in (plugdev).
+[[nodiscard]] Check check_usb_rights(const std::vector<UsbDevice>& devices, const SystemFolders& folders, gid_t service_group);
+[[nodiscard]] Check check_usb_driver(const std::vector<UsbDevice>& devices, const std::string& scheme, bool is_daemon_running);
+[[nodiscard]] Check check_usb_bandwidth(const std::vector<UsbDevice>& devices, const SystemFolders& folders);
+[[nodiscard]] Check check_openni2(const Openni2Installation& openni2, const std::string& scheme);
+
+// doctor_system.cc: what it runs on
+[[nodiscard]] Check check_daemon(const std::string& socket_path, DaemonAnswer* daemon);
+/// `properties`: of `systemctl show camlocd`, lines KEY=VALUE.
+[[nodiscard]] Check check_service(const std::string& properties);
+[[nodiscard]] Check check_lcm(const std::string& url);
+struct ClockState {
+  std::int64_t epoch_s = 0;
+  bool is_synchronized = false;
+};
+[[nodiscard]] ClockState read_clock();
+[[nodiscard]] Check check_clock(const ClockState& clock);
+[[nodiscard]] Check check_cpu();
+[[nodiscard]] Check check_memory(const SystemFolders& folders);
+
+}  // namespace camloc::tools
