@@ -9,9 +9,11 @@
 #include <deque>
 #include <lcm/lcm-cpp.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "tools/camloc/commands.h"
+#include "tools/camloc/map_sketch.h"
 #include "tools/camloc/monitor_view.h"
 #include "tools/camloc/multicast_route.h"
 
@@ -54,6 +56,7 @@ class Monitor {
     while (seconds_between(arrivals_.front(), now) > 2) arrivals_.pop_front();
     ++state_.num_poses;
     if (pose.state == pose_t::LOCALIZED) ++state_.num_localized;
+    state_.latencies.add(pose);
     if (options_.is_json) {
       std::printf("%s\n", dump(pose_json(pose)).c_str());
     } else if (!is_screen_) {
@@ -66,7 +69,8 @@ class Monitor {
     status_t status;
     if (status.decode(buffer->data, 0, static_cast<int>(buffer->data_size)) < 0) return refuse(channel);
     const bool is_news = !state_.status || state_.status->state != status.state || state_.status->map_id != status.map_id ||
-                         state_.status->is_calibration_suspect != status.is_calibration_suspect;
+                         state_.status->is_calibration_suspect != status.is_calibration_suspect ||
+                         state_.status->camera_state != status.camera_state;
     if (options_.is_json) {
       std::printf("%s\n", dump(status_json(status)).c_str());
     } else if (!is_screen_ && is_news) {
@@ -84,6 +88,7 @@ class Monitor {
                          ? 0
                          : static_cast<double>(arrivals_.size() - 1) / seconds_between(arrivals_.front(), arrivals_.back());
     state_.seconds_since_pose = silence_s();
+    state_.sketch = sketch();
     std::printf("\x1b[H\x1b[J%s", monitor_screen(state_).c_str());
   }
 
@@ -95,6 +100,25 @@ class Monitor {
   /// Text from a message may be no UTF-8.
   static std::string dump(const nlohmann::json& record) {
     return record.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  }
+
+  /// Where in the map, if the daemon's map can be read here and is the one it has open.
+  std::string sketch() {
+    if (!state_.status || !state_.pose) return "";
+    const status_t& status = *state_.status;
+    if (!sketch_ || sketched_map_id_ != status.map_id) {
+      sketched_map_id_ = status.map_id;
+      sketch_.emplace(std::vector<Eigen::Vector2d>(), std::vector<Eigen::Vector2d>());
+      const Result<MapView> map = MapView::open(status.map_path);
+      if (!map || map->info().map_id != static_cast<std::uint64_t>(status.map_id)) return "";
+      sketch_ = MapSketch::of(*map);
+      T_map_wcs_ = map->info().wcs ? map->info().wcs->T_wcs_map.inverse() : Rigid3{};
+    }
+    const pose_t& pose = *state_.pose;
+    if (pose.state != pose_t::LOCALIZED && pose.state != pose_t::COASTING) return sketch_->draw(std::nullopt);
+    const Rigid3 T_parent_camera{Eigen::Quaterniond(pose.orientation[0], pose.orientation[1], pose.orientation[2], pose.orientation[3]),
+                                 {pose.pos[0], pose.pos[1], pose.pos[2]}};
+    return sketch_->draw(pose.parent_frame == "wcs" ? T_map_wcs_ * T_parent_camera : T_parent_camera);
   }
 
   void refuse(const std::string& channel) {
@@ -111,6 +135,9 @@ class Monitor {
   Clock::time_point last_draw_{};
   std::deque<Clock::time_point> arrivals_;  // of the last two seconds, at least one
   MonitorState state_;
+  std::optional<MapSketch> sketch_;
+  std::int64_t sketched_map_id_ = 0;
+  Rigid3 T_map_wcs_;
 };
 
 int run(const MonitorOptions& options) {

@@ -11,6 +11,8 @@
 #include <cstdio>
 #include <vector>
 
+#include "core/base/order_statistics.h"
+
 namespace camloc::tools {
 namespace {
 
@@ -60,8 +62,8 @@ std::vector<std::string> warnings(const MonitorState& state) {
   if (status.map_reload_failures > 0) {
     texts.push_back(print("%lld map reloads refused, the old map is kept", static_cast<long long>(status.map_reload_failures)));
   }
-  if (status.device_reopens > 0)
-    texts.push_back(print("camera opened again %lld times", static_cast<long long>(status.device_reopens)));
+  if (status.camera_state == "stalled") texts.push_back("the camera is silent; camlocd restarts it");
+  if (status.camera_state == "missing") texts.push_back("the camera is not there; see 'camloc doctor'");
   return texts;
 }
 
@@ -97,7 +99,7 @@ std::string pose_line(const pose_t& pose) {
 std::string status_line(const status_t& status) {
   std::string line = print("status %s", state_name(status.state).c_str());
   line += "  " + printable(status.state_text) + "  source " + printable(status.source) + "  map " + printable(status.map_path);
-  line += print("  %.1f Hz  dropped %lld  %.1f MB", status.frame_rate_hz, static_cast<long long>(status.frames_dropped),
+  line += print("  camera %s  %.1f Hz  dropped %lld  %.1f MB", printable(status.camera_state).c_str(), status.frame_rate_hz, static_cast<long long>(status.frames_dropped),
                 static_cast<double>(status.rss_bytes) / 1e6);
   MonitorState only_status;
   only_status.status = status;
@@ -148,7 +150,16 @@ nlohmann::json status_json(const status_t& status) {
           {"reset_counter", status.reset_counter},
           {"map_reloads", status.map_reloads},
           {"map_reload_failures", status.map_reload_failures},
+          {"camera_state", status.camera_state},
+          {"camera_stalls", status.camera_stalls},
+          {"stream_restarts", status.stream_restarts},
           {"device_reopens", status.device_reopens},
+          {"device_resets", status.device_resets},
+          {"last_recovery_ms", status.last_recovery_ms},
+          {"packets_lost", status.packets_lost},
+          {"frames_incomplete", status.frames_incomplete},
+          {"frames_unpaired", status.frames_unpaired},
+          {"clock_drift_ppm", status.clock_drift_ppm},
           {"frame_rate_hz", status.frame_rate_hz},
           {"latency_p50_ms", status.latency_p50_ms},
           {"latency_max_ms", status.latency_max_ms},
@@ -157,41 +168,80 @@ nlohmann::json status_json(const status_t& status) {
           {"focal_scale", status.focal_scale}};
 }
 
-std::string monitor_screen(const MonitorState& state) {
-  std::string screen;
-  if (state.pose) {
-    const pose_t& pose = *state.pose;
-    screen += "state     " + state_name(pose.state) +
-              (pose.reason_text.empty() ? "" : "  (" + printable(pose.reason_text) + ")") + "\n";
-    if (has_pose(pose)) {
-      const PoseSigma sigma = pose_sigma(pose);
-      screen += print("position  %+9.3f %+9.3f %+9.3f m in %s, sigma %.1f cm\n", pose.pos[0], pose.pos[1], pose.pos[2],
-                      printable(pose.parent_frame).c_str(), 100 * sigma.position_m);
-      screen += print("rotation  %+9.4f %+9.4f %+9.4f %+9.4f (w x y z), sigma %.2f deg\n", pose.orientation[0],
-                      pose.orientation[1], pose.orientation[2], pose.orientation[3], kDegreesPerRadian * sigma.rotation_rad);
-    } else {
-      screen += "position  none\nrotation  none\n";
-    }
-    screen += print("quality   %d, %d inliers of %d matches of %d features\n", static_cast<int>(pose.quality), pose.num_inliers,
-                    pose.num_matches, pose.num_features);
-    screen +=
-        print("latency   %.1f ms in the localizer, capture to publishing %s\n", pose.latency_us[5] / 1e3, age_text(pose).c_str());
-    screen += print("poses     %lld, %.1f %% localized, %.1f Hz, %d resets\n", state.num_poses,
-                    100.0 * static_cast<double>(state.num_localized) / static_cast<double>(std::max(1LL, state.num_poses)),
-                    state.rate_hz, pose.reset_counter);
-  } else {
-    screen += "state     waiting for the first pose\n";
+void StageLatencies::add(const pose_t& pose) {
+  for (std::size_t stage = 0; stage < kNumStages; ++stage) {
+    std::vector<double>& durations = durations_ms_[stage];
+    if (durations.size() < kWindow) durations.resize(durations.size() + 1);
+    durations[next_] = pose.latency_us[stage] / 1e3;
   }
+  next_ = (next_ + 1) % kWindow;
+}
+
+StageLatencies::Summary StageLatencies::of(std::size_t stage) const {
+  return {upper_median(durations_ms_[stage]), lower_quantile(durations_ms_[stage], 0.99)};
+}
+
+namespace {
+
+std::string pose_part(const MonitorState& state) {
+  const pose_t& pose = *state.pose;
+  std::string screen =
+      "state     " + state_name(pose.state) + (pose.reason_text.empty() ? "" : "  (" + printable(pose.reason_text) + ")") + "\n";
+  if (has_pose(pose)) {
+    const PoseSigma sigma = pose_sigma(pose);
+    screen += print("position  %+9.3f %+9.3f %+9.3f m in %s, sigma %.1f cm\n", pose.pos[0], pose.pos[1], pose.pos[2],
+                    printable(pose.parent_frame).c_str(), 100 * sigma.position_m);
+    screen += print("rotation  %+9.4f %+9.4f %+9.4f %+9.4f (w x y z), sigma %.2f deg\n", pose.orientation[0], pose.orientation[1],
+                    pose.orientation[2], pose.orientation[3], kDegreesPerRadian * sigma.rotation_rad);
+  } else {
+    screen += "position  none\nrotation  none\n";
+  }
+  screen += print("quality   %d, %d inliers of %d matches of %d features\n", static_cast<int>(pose.quality), pose.num_inliers,
+                  pose.num_matches, pose.num_features);
+  screen += print("poses     %lld, %.1f %% localized, %.1f Hz, %d resets\n", state.num_poses,
+                  100.0 * static_cast<double>(state.num_localized) / static_cast<double>(std::max(1LL, state.num_poses)),
+                  state.rate_hz, pose.reset_counter);
+  return screen;
+}
+
+std::string latency_part(const MonitorState& state) {
+  std::string names = "latency ", medians = "  p50 ms", worst = "  p99 ms";
+  for (std::size_t stage = 0; stage < kStageNames.size(); ++stage) {
+    const StageLatencies::Summary summary = state.latencies.of(stage);
+    names += print(" %10s", kStageNames[stage]);
+    medians += print(" %10.2f", summary.median_ms);
+    worst += print(" %10.2f", summary.p99_ms);
+  }
+  return names + "\n" + medians + "\n" + worst + "\n" + "  capture to publishing " + age_text(*state.pose) + "\n";
+}
+
+std::string camera_part(const status_t& status) {
+  const auto count = [](std::int64_t value) { return static_cast<long long>(value); };
+  std::string screen = "camera    " + (status.camera_state.empty() ? "" : printable(status.camera_state) + ", ") +
+                       printable(status.source) + print(", %.1f Hz\n", status.frame_rate_hz);
+  screen += print("  frames  %lld received, %lld dropped, %lld corrupt, %lld incomplete, %lld unpaired, %lld packets lost\n",
+                  count(status.frames_received), count(status.frames_dropped), count(status.frames_corrupt),
+                  count(status.frames_incomplete), count(status.frames_unpaired), count(status.packets_lost));
+  screen += print("  recovery %lld stalls: %lld stream restarts, %lld opened again, %lld resets", count(status.camera_stalls),
+                  count(status.stream_restarts), count(status.device_reopens), count(status.device_resets));
+  if (status.last_recovery_ms > 0) screen += print("; the last took %.0f ms", status.last_recovery_ms);
+  if (status.clock_drift_ppm != 0) screen += print("; clock %+.1f ppm", status.clock_drift_ppm);
+  return screen + "\n";
+}
+
+}  // namespace
+
+std::string monitor_screen(const MonitorState& state) {
+  std::string screen = state.pose ? pose_part(state) + latency_part(state) : "state     waiting for the first pose\n";
   if (state.status) {
-    screen += "source    " + printable(state.status->source) + "\n";
-    screen += "map       " + printable(state.status->map_path) + "\n";
-    screen += print("daemon    up %.0f s, %.1f Hz, %lld of %lld frames dropped, %.1f MB\n",
-                    static_cast<double>(state.status->uptime_us) / 1e6, state.status->frame_rate_hz,
-                    static_cast<long long>(state.status->frames_dropped), static_cast<long long>(state.status->frames_received),
-                    static_cast<double>(state.status->rss_bytes) / 1e6);
+    const status_t& status = *state.status;
+    screen += camera_part(status);
+    screen += "map       " + printable(status.map_path) + print(", id %s, %lld reloads\n", map_id_text(status.map_id).c_str(), static_cast<long long>(status.map_reloads));
+    screen += print("daemon    up %.0f s, capture to pose p50 %.1f max %.1f ms, %.1f MB\n", static_cast<double>(status.uptime_us) / 1e6,
+                    status.latency_p50_ms, status.latency_max_ms, static_cast<double>(status.rss_bytes) / 1e6);
   }
   for (const auto& warning : warnings(state)) screen += "WARNING   " + warning + "\n";
-  return screen;
+  return screen + state.sketch;
 }
 
 }  // namespace camloc::tools
