@@ -174,6 +174,45 @@ TEST(MonitorViewTest, ScreenWarnsOfASuspectCalibrationAndOfSilence) {
   EXPECT_NE(screen.find("no pose for 4 s"), std::string::npos) << screen;
 }
 
+TEST(MonitorViewTest, ScreenShowsCameraRecoveryAndStages) {
+  MonitorState state;
+  state.pose = make_pose(pose_t::LOCALIZED);
+  for (int i = 0; i < 400; ++i) {
+    pose_t pose = make_pose(pose_t::LOCALIZED);
+    pose.latency_us[0] = i < 100 ? 90000 : 2500;  // the first hundred have left the window
+    state.latencies.add(pose);
+  }
+  state.status = make_status();
+  state.status->camera_state = "stalled";
+  state.status->frames_received = 1234;
+  state.status->packets_lost = 17;
+  state.status->stream_restarts = 2;
+  state.status->last_recovery_ms = 812;
+  state.status->clock_drift_ppm = -12.5;
+  state.sketch = "  o.o\n";
+  const std::string screen = monitor_screen(state);
+  for (const char* part : {"stalled, replay://walk", "1234 received", "17 packets lost", "2 stream restarts", "the last took 812 ms", "clock -12.5 ppm",
+                           "WARNING   the camera is silent", "extract", "  o.o\n"}) {
+    EXPECT_NE(screen.find(part), std::string::npos) << part << "\n" << screen;
+  }
+  EXPECT_EQ(state.latencies.of(0).median_ms, 2.5);
+  EXPECT_EQ(state.latencies.of(0).p99_ms, 2.5);
+  EXPECT_EQ(state.latencies.of(5).median_ms, 6.5);
+  EXPECT_EQ(StageLatencies().of(0).median_ms, 0);
+}
+
+TEST(MonitorViewTest, JsonHasEveryFieldOfTheCamera) {
+  status_t status = make_status();
+  status.camera_state = "streaming";
+  status.frames_unpaired = 4;
+  const json record = status_json(status);
+  EXPECT_EQ(record["camera_state"], "streaming");
+  EXPECT_EQ(record["frames_unpaired"], 4);
+  for (const char* key : {"camera_stalls", "stream_restarts", "device_reopens", "device_resets", "last_recovery_ms", "packets_lost", "frames_incomplete", "clock_drift_ppm"}) {
+    EXPECT_TRUE(record.contains(key)) << key;
+  }
+}
+
 TEST(MonitorViewTest, NoPositionIsShownWithoutAPose) {
   for (const std::int8_t pose_state : {pose_t::NO_CAMERA, pose_t::NO_MAP, pose_t::LOST, pose_t::COARSE}) {
     EXPECT_EQ(pose_line(make_pose(pose_state)).find("+1.500"), std::string::npos) << static_cast<int>(pose_state);

@@ -48,6 +48,9 @@ void measure_depth(const CalibrationViews& views, const CalibrationOptions& opti
   const Result<DepthFit> depth = fit_depth(options.board, used, calibration->lens.T_camera_board, camera);
   if (!depth) return calibration->warnings.push_back("depth not checked: " + depth.status().message());
   calibration->depth = *depth;
+  // A focal length that is too long puts the board too far away: no comparison with depth is better than that.
+  const double focal_sigma = calibration->lens.sigma[0] / camera.color.fx;
+  calibration->depth->scale_sigma = std::hypot(depth->scale_sigma, focal_sigma);
   camera.depth_noise = depth->noise;
   if (options.corrects_depth_unit) camera.depth_unit_m /= depth->scale;
 }

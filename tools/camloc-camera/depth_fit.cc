@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t kMinPixels = 200, kMinPlanes = 5;
 constexpr double kMaxError = 0.2;         // relative: what is farther off is not the board
 constexpr double kMinDepthRange = 1.5;    // farthest over nearest, to tell scale from offset
+constexpr double kMinPlaneRange = 1.3;    // the same for planes and the extrinsic
 constexpr double kMinNormalSpread = 0.01; // smallest mean squared component of the normals: about 6 degrees of tilt to both sides
 constexpr double kMadToSigma = 1.4826;
 constexpr double kStep = 0.01;            // relative; a Kinect's steps are 0.3 % of the distance at 1 m, 1 % at 4 m
@@ -186,14 +187,38 @@ PlanePair pair_up(const SeenPlane& seen, const Rigid3& T_color_board) {
   return pair;
 }
 
+/// From color_distance = depth_distance / scale + color_normal . translation. The scale is left at 1 where the board was always at
+/// about the same distance, because it cannot be told from the translation then.
+void solve_translation(const std::vector<PlanePair>& pairs, ExtrinsicFit* fit) {
+  const auto [nearest, farthest] = std::minmax_element(pairs.begin(), pairs.end(), [](const PlanePair& a, const PlanePair& b) { return a.depth_distance_m < b.depth_distance_m; });
+  const bool has_scale = farthest->depth_distance_m > kMinPlaneRange * nearest->depth_distance_m;
+  Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d b = Eigen::Vector4d::Zero();
+  for (const PlanePair& pair : pairs) {
+    Eigen::Vector4d row;
+    row << pair.color_normal, has_scale ? pair.depth_distance_m : 0;
+    A += row * row.transpose();
+    b += (pair.color_distance_m - pair.depth_distance_m) * row;
+  }
+  if (!has_scale) A(3, 3) = 1;
+  const Eigen::Vector4d solution = A.ldlt().solve(b);
+  double squares = 0;
+  for (const PlanePair& pair : pairs) {
+    squares += std::pow(pair.color_distance_m - (1 + solution[3]) * pair.depth_distance_m - pair.color_normal.dot(solution.head<3>()), 2);
+  }
+  const auto count = static_cast<double>(pairs.size());
+  fit->T_color_depth.translation = solution.head<3>();
+  fit->depth_scale = 1 / (1 + solution[3]);
+  fit->distance_rms_m = std::sqrt(squares / count);
+  fit->translation_sigma_m = largest_sigma(A.inverse().topLeftCorner<3, 3>() * (squares / (count - 4)));
+}
+
 Result<ExtrinsicFit> solve_planes(const std::vector<PlanePair>& pairs) {
   Eigen::Matrix3d cross = Eigen::Matrix3d::Zero(), spread = Eigen::Matrix3d::Zero(), turn = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d b = Eigen::Vector3d::Zero();
   for (const PlanePair& pair : pairs) {
     cross += pair.color_normal * pair.depth_normal.transpose();
     spread += pair.color_normal * pair.color_normal.transpose();
     turn += Eigen::Matrix3d::Identity() - pair.color_normal * pair.color_normal.transpose();
-    b += (pair.color_distance_m - pair.depth_distance_m) * pair.color_normal;
   }
   const auto count = static_cast<double>(pairs.size());
   if (Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread / count, Eigen::EigenvaluesOnly).eigenvalues()[0] < kMinNormalSpread) {
@@ -201,16 +226,11 @@ Result<ExtrinsicFit> solve_planes(const std::vector<PlanePair>& pairs) {
   }
   ExtrinsicFit fit;
   fit.T_color_depth.rotation = nearest_rotation(cross);
-  fit.T_color_depth.translation = spread.ldlt().solve(b);
-  double normal_squares = 0, distance_squares = 0;
-  for (const PlanePair& pair : pairs) {
-    normal_squares += (pair.color_normal - fit.T_color_depth.rotation * pair.depth_normal).squaredNorm();
-    distance_squares += std::pow(pair.color_distance_m - pair.depth_distance_m - pair.color_normal.dot(fit.T_color_depth.translation), 2);
-  }
-  fit.normal_rms_rad = std::sqrt(normal_squares / count);
-  fit.distance_rms_m = std::sqrt(distance_squares / count);
-  fit.rotation_sigma_rad = largest_sigma(turn.inverse() * (normal_squares / (2 * count - 3)));
-  fit.translation_sigma_m = largest_sigma(spread.inverse() * (distance_squares / (count - 3)));
+  solve_translation(pairs, &fit);
+  double squares = 0;
+  for (const PlanePair& pair : pairs) squares += (pair.color_normal - fit.T_color_depth.rotation * pair.depth_normal).squaredNorm();
+  fit.normal_rms_rad = std::sqrt(squares / count);
+  fit.rotation_sigma_rad = largest_sigma(turn.inverse() * (squares / (2 * count - 3)));
   return fit;
 }
 

@@ -41,6 +41,7 @@ struct ExtrinsicFit {
   Rigid3 T_color_depth;
   double translation_sigma_m = 0, rotation_sigma_rad = 0;  ///< largest over all directions
   double normal_rms_rad = 0, distance_rms_m = 0;           ///< how well the planes agree
+  double depth_scale = 1;  ///< measured over true distance; found together with the translation, which would take it up otherwise
 };
 
 /// `T_color_board` belongs to `views` one by one; views without depth are left out. kInvalid: fewer than five show the board's

@@ -29,7 +29,8 @@ struct DoctorOptions {
 
 const char* to_string(Level level) { return level == Level::kOk ? "ok" : level == Level::kWarning ? "warn" : "FAIL"; }
 
-bool is_depth_camera(const UsbDevice& device) { return role_of(device) != UsbRole::kNone; }
+bool is_of_a_camera(const UsbDevice& device) { return role_of(device) != UsbRole::kNone; }
+bool is_camera(const UsbDevice& device) { return role_of(device) == UsbRole::kKinectCamera || role_of(device) == UsbRole::kOpenni2Camera; }
 
 gid_t group_of_devices() {
   const group* plugdev = ::getgrnam("plugdev");
@@ -41,8 +42,8 @@ void examine_usb(const Settings& settings, const DaemonAnswer& daemon, std::vect
   const SystemFolders folders;
   const std::string scheme = settings.scheme();
   const std::vector<UsbDevice> devices = list_usb_devices(folders);
-  if (std::any_of(devices.begin(), devices.end(), is_depth_camera) || scheme == "kinect") {
-    checks->push_back(check_usb_presence(devices, scheme));
+  if (std::any_of(devices.begin(), devices.end(), is_of_a_camera) || scheme == "kinect") checks->push_back(check_usb_presence(devices, scheme));
+  if (std::any_of(devices.begin(), devices.end(), is_camera)) {
     checks->push_back(check_usb_rights(devices, folders, group_of_devices()));
     checks->push_back(check_usb_driver(devices, scheme, daemon.has_value()));
     checks->push_back(check_usb_bandwidth(devices, folders));

@@ -85,7 +85,10 @@ Check check_source(const std::string& url, const DaemonAnswer& daemon, std::opti
     return {"camera", Level::kFailure, url + ": camlocd gets no frames", "see the usb lines; 'journalctl -u camlocd -b' has the reason"};
   }
   auto source = open_frame_source(url);
-  if (!source) return {"camera", Level::kFailure, source.status().message(), "'camloc camera list' shows what is plugged in; this build knows " + known_schemes()};
+  if (!source) {
+    const bool is_unknown = source.status().code() == ErrorCode::kUnsupported;
+    return {"camera", Level::kFailure, source.status().message(), is_unknown ? "this build knows " + known_schemes() : "'camloc camera list' shows what is plugged in"};
+  }
   FrameBuffer frame;
   const Status status = (*source)->next(&frame, std::chrono::seconds(3));
   if (!status) return {"camera", Level::kFailure, url + ": " + status.message(), "check cable, power and permission of the device"};
