@@ -38,13 +38,13 @@ Rigid3 camera_at(double x, double y, const Eigen::Vector3d& forward) {
 
 TEST(MapSketchTest, KeepsItsSizeAndShowsTheCamera) {
   const auto lines = lines_of(room(72, 18).draw(camera_at(6, 3.5, {0, 1, 0})));
-  ASSERT_EQ(lines.size(), 19U);  // 4 m in rows of 2 x 8/71 m, and the scale
+  ASSERT_EQ(lines.size(), 19U);  // 4 m in rows of 2 x 4/34 m, and the scale
   for (std::size_t i = 0; i + 1 < lines.size(); ++i) EXPECT_LE(lines[i].size(), 74U);
   EXPECT_EQ(lines[0].find("  ...."), 0U) << lines[0];
   std::size_t row = 0;
   while (row < lines.size() && lines[row].find('^') == std::string::npos) ++row;
-  EXPECT_EQ(row, 2U) << "half a metre from the upper wall";
-  EXPECT_NEAR(static_cast<double>(lines[row].find('^')), 2 + 6 / 8.0 * 71, 1.5);
+  EXPECT_EQ(row, 3U) << "half a metre, a bit more than two rows, from the upper wall";
+  EXPECT_NEAR(static_cast<double>(lines[row].find('^')), 2 + 6 * 34 / 4.0, 1.0);
   EXPECT_NE(lines[9].find("o   o"), std::string::npos) << lines[9];
 }
 
