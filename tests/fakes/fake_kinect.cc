@@ -97,7 +97,7 @@ int main(int argc, char** argv) {
   app.add_flag("--real-time", is_real_time, "Lose packets when the client is late with its buffers, as a real bus does");
   app.add_flag("--kernel-driver", has_driver, "gspca_kinect owns the camera until it is detached");
   app.add_flag("--unplugged", is_unplugged, "Start without the device");
-  app.add_flag("--no-motor", has_no_motor, "Only the camera");
+  app.add_flag("--no-motor", has_no_motor, "Only the camera (always so with --model 1473 and k4w)");
   app.add_option("command", command, "-- PROGRAM ARGS...");
   app.positionals_at_end();
   CLI11_PARSE(app, argc, argv);
@@ -111,7 +111,8 @@ int main(int argc, char** argv) {
   auto rig = KinectRig::create(arguments.rig);
   if (!rig) return fail(rig.status(), kFailed);
   UsbfsHost host(rig->get(), is_real_time ? BusPace::kRealTime : BusPace::kLossless, has_driver);
-  auto bus = UmockdevBus::create(rig->get(), &host, !has_no_motor);
+  const bool has_motor = !has_no_motor && arguments.rig.kinect.model == KinectModel::k1414;  // later models have it in the audio device
+  auto bus = UmockdevBus::create(rig->get(), &host, has_motor);
   if (!bus) return fail(bus.status(), kFailed);
   if (!is_unplugged) {
     if (const Status status = (*bus)->replug(); !status) return fail(status, kFailed);

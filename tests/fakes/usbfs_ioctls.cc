@@ -37,6 +37,15 @@ bool write_memory(pid_t pid, std::uint64_t address, const void* from, std::size_
   return ::process_vm_writev(pid, &local, 1, &remote, 1, 0) == static_cast<ssize_t>(size);
 }
 
+/// The kernel carries only what the descriptors announce.
+bool has_iso_endpoint(const UsbDescriptors& descriptors, int address) {
+  constexpr std::uint8_t kEndpointDescriptor = 5, kIsochronous = 1, kTypeMask = 3;
+  const std::vector<std::uint8_t>& bytes = descriptors.configuration;
+  for (std::size_t at = 0; at + 4 <= bytes.size() && bytes[at] > 0; at += bytes[at])
+    if (bytes[at + 1] == kEndpointDescriptor && bytes[at + 2] == address && (bytes[at + 3] & kTypeMask) == kIsochronous) return true;
+  return false;
+}
+
 }  // namespace
 
 IoctlResult UsbfsHost::dispatch(Session* session, unsigned long request, std::uint64_t argument) {
@@ -157,7 +166,7 @@ IoctlResult UsbfsHost::submit_control(Session* session, UrbPtr urb, std::int32_t
 IoctlResult UsbfsHost::submit_iso(Session* session, UrbPtr urb, int endpoint, std::int32_t num_packets) {
   constexpr int kVideoEndpoint = 0x81, kDepthEndpoint = 0x82;
   if (session->device != UsbDeviceId::kCamera || (endpoint != kVideoEndpoint && endpoint != kDepthEndpoint)) return failed(ENOENT);
-  if (!session->has_claimed) return failed(ENOENT);
+  if (!session->has_claimed || !has_iso_endpoint(rig_->device(session->device).descriptors(), endpoint)) return failed(ENOENT);
   if (num_packets < 1 || num_packets > kMaxIsoPackets) return failed(EINVAL);
   const auto count = static_cast<std::size_t>(num_packets);
   std::array<usbdevfs_iso_packet_desc, static_cast<std::size_t>(kMaxIsoPackets)> packets;
