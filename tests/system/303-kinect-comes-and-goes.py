@@ -31,7 +31,7 @@ with kinect_scenario("--unplugged") as (folder, kinect, start, tap):
     add_route()
     listener = tap()
     daemon = start()
-    assert daemon.wait_state("NO_CAMERA")["camera_state"] == "missing", "no camera at start is normal"
+    wait_until(lambda: daemon.command("status")["camera_state"] == "missing", "that no camera at start is normal")
     kinect.replug()
     wait_localized(listener)
 
@@ -55,7 +55,9 @@ with kinect_scenario("--unplugged") as (folder, kinect, start, tap):
         kinect.replug()
         times.append(wait_localized(listener, PATIENCE_S))
     print(f"{NUM_UNPLUGS} times unplugged: localized again after {longest(times)}")
-    assert num_descriptors(daemon) <= baseline[0], (baseline, num_descriptors(daemon))
+    # A connection or two may be open at any moment; what leaks grows with every unplugging.
+    assert num_descriptors(daemon) <= baseline[0] + 2, (baseline, num_descriptors(daemon))
+    print(f"descriptors {baseline[0]} -> {num_descriptors(daemon)}, resident {baseline[1]} -> {resident_kb(daemon)} kB")
     assert resident_kb(daemon) < baseline[1] + 4096, (baseline, resident_kb(daemon))
     assert daemon.stop() == 0
 
