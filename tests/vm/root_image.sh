@@ -5,7 +5,7 @@
 # Sourced by tests/vm/run.
 
 # What scenarios call themselves; what camloc needs is asked of its packages.
-base_packages=(systemd systemd-sysv udev dbus kmod v4l-utils iproute2 libfreenect0.5)
+base_packages=(systemd systemd-sysv udev dbus kmod v4l-utils iproute2)
 
 # The machine's own Debian repositories, as lines of a sources.list.
 debian_sources() {

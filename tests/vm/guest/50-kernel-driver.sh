@@ -3,6 +3,7 @@
 #
 # The fake Kinect is believed by the kernel: gspca_kinect loads by itself and streams from it. The device has the rights that
 # 60-camloc.rules gives, and plugging it in starts the service where it is enabled, and only there.
+systemctl enable camlocd
 systemctl stop camlocd
 host replug
 within 20 has_video_node kinect
