@@ -1,9 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The camloc authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# What the packages left on the system: user, groups, folders, a unit that is there but not enabled, nothing that complains.
+# What the package left on the system: user, groups, folders, a unit that is there but not enabled, nothing that complains.
 [[ $(dpkg-query -W -f='${db:Status-Abbrev}' camloc) == "ii " ]] || fail "camloc is not installed"
-[[ $(dpkg-query -W -f='${db:Status-Abbrev}' camloc-tools) == "ii " ]] || fail "camloc-tools is not installed"
 getent passwd camloc | grep -q ':/usr/sbin/nologin$' || fail "no user camloc, or one that can log in"
 [[ $(stat -c '%U:%G %a' /var/lib/camloc) == "root:camloc 2775" ]] || fail "/var/lib/camloc is $(stat -c '%U:%G %a' /var/lib/camloc)"
 [[ $(systemctl is-enabled camlocd) == disabled ]] || fail "the service is enabled by its installation"

@@ -12,7 +12,7 @@ is_active && [[ $(main_pid) != "$before" ]] || fail "the new version does not ru
 grep -q '^# mine' /etc/camloc/camlocd.toml || fail "the upgrade replaced a changed configuration"
 [[ $(systemctl is-enabled camlocd) == enabled ]] || fail "the upgrade disabled the service"
 
-dpkg -r camloc-tools camloc >"$work/remove" 2>&1 || fail "remove: $(tail -n 3 "$work/remove")"
+dpkg -r camloc >"$work/remove" 2>&1 || fail "remove: $(tail -n 3 "$work/remove")"
 ! is_active || fail "the service runs on after its program was removed"
 [[ ! -e /usr/bin/camlocd && -f /etc/camloc/camlocd.toml && -f $map ]] || fail "remove took too much, or too little"
 [[ -z $(systemctl --failed --no-legend) ]] || fail "$(systemctl --failed --no-legend)"
