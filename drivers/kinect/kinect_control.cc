@@ -29,26 +29,37 @@ struct RegisterValue {
 
 }  // namespace
 
-Result<std::span<const std::uint8_t>> KinectControl::command(Command command, std::span<const std::uint16_t> body,
+Result<std::span<const std::uint8_t>> KinectControl::attempt(Command command, std::span<const std::uint16_t> body,
                                                              std::size_t min_body_bytes) {
-  const std::string name = "Kinect command " + hexadecimal(static_cast<std::uint16_t>(command));
   const ControlRequest request = encode_request(command, ++tag_, body);
-  if (Status status = transport_->send({request.bytes.data(), request.size}); !status) return status.with_context(name);
+  if (Status status = transport_->send({request.bytes.data(), request.size}); !status) return status;
   for (auto waited = std::chrono::microseconds(0); waited <= kReplyPatience; waited += kPollInterval) {
     const Result<std::size_t> size = transport_->receive(reply_);
-    if (!size) return size.status().with_context(name);
+    if (!size) return size.status();
     const ControlReply reply = parse_reply({reply_.data(), std::min(*size, reply_.size())}, command, tag_);
-    if (reply.state == ReplyState::kCorrupt) return Status(ErrorCode::kCorrupt, name + ": the device answers nonsense");
+    if (reply.state == ReplyState::kCorrupt) return Status(ErrorCode::kCorrupt, "the device answers nonsense");
     if (reply.state == ReplyState::kOk) {
-      if (reply.body.size() < std::max<std::size_t>(min_body_bytes, 2)) {
-        return Status(ErrorCode::kCorrupt, name + ": the answer has " + std::to_string(reply.body.size()) + " bytes, expected " +
-                                               std::to_string(min_body_bytes));
-      }
-      return reply.body;
+      // A refusal is its status word and nothing else.
+      const bool is_refusal = reply.body.size() >= 2 && word_at(reply.body, 0) != 0;
+      if (is_refusal || reply.body.size() >= std::max<std::size_t>(min_body_bytes, 2)) return reply.body;
+      return Status(ErrorCode::kCorrupt,
+                    "the answer has " + std::to_string(reply.body.size()) + " bytes, expected " + std::to_string(min_body_bytes));
     }
     transport_->pause(kPollInterval);
   }
-  return Status(ErrorCode::kTimeout, name + ": no answer within " + std::to_string(kReplyPatience.count()) + " ms");
+  return Status(ErrorCode::kTimeout, "no answer within " + std::to_string(kReplyPatience.count()) + " ms");
+}
+
+Result<std::span<const std::uint8_t>> KinectControl::command(Command command, std::span<const std::uint16_t> body,
+                                                             std::size_t min_body_bytes) {
+  Status problem;
+  for (int i = 0; i < kMaxAttempts; ++i) {
+    Result<std::span<const std::uint8_t>> reply = attempt(command, body, min_body_bytes);
+    if (reply) return reply;
+    problem = reply.status();
+    if (problem.code() == ErrorCode::kUnavailable) break;
+  }
+  return problem.with_context("Kinect command " + hexadecimal(static_cast<std::uint16_t>(command)));
 }
 
 Status KinectControl::write_register(Register address, std::uint16_t value) {
@@ -92,18 +103,22 @@ Result<std::span<const std::uint8_t>> KinectControl::algorithm_parameter(Algorit
   return command(Command::kAlgorithm, body, bytes);
 }
 
-KinectCalibration KinectControl::read_calibration() {
+Result<KinectCalibration> KinectControl::read_calibration() {
+  // The body of each is used up before the next request.
   KinectCalibration calibration;
-  if (const auto body = algorithm_parameter(AlgorithmParameter::kRegistration, kRegistrationBodyBytes))
-    calibration.registration = parse_registration(*body);
-  if (const auto body = algorithm_parameter(AlgorithmParameter::kRegistrationPadding, kPaddingBodyBytes)) {
-    calibration.padding_start_lines = parse_padding(*body).value_or(0);
-  }
-  if (const auto body = algorithm_parameter(AlgorithmParameter::kConstShift, kConstShiftBodyBytes))
-    calibration.const_shift = parse_const_shift(*body);
+  const auto registration = algorithm_parameter(AlgorithmParameter::kRegistration, kRegistrationBodyBytes);
+  if (!registration) return registration.status();
+  calibration.registration = parse_registration(*registration);
+  const auto padding = algorithm_parameter(AlgorithmParameter::kRegistrationPadding, kPaddingBodyBytes);
+  if (!padding) return padding.status();
+  calibration.padding_start_lines = parse_padding(*padding).value_or(0);
+  const auto const_shift = algorithm_parameter(AlgorithmParameter::kConstShift, kConstShiftBodyBytes);
+  if (!const_shift) return const_shift.status();
+  calibration.const_shift = parse_const_shift(*const_shift);
   constexpr std::uint16_t kFromStart[5] = {};
-  if (const auto body = command(Command::kFixedParameters, kFromStart, kZeroPlaneOffset + 16))
-    calibration.zero_plane = parse_zero_plane(*body);
+  const auto zero_plane = command(Command::kFixedParameters, kFromStart, kZeroPlaneOffset + 16);
+  if (!zero_plane) return zero_plane.status();
+  calibration.zero_plane = parse_zero_plane(*zero_plane);
   return calibration;
 }
 
@@ -113,6 +128,7 @@ Result<std::uint16_t> KinectControl::read_sensor(std::uint16_t address) {
   const std::uint16_t body[] = {1, address, 0};
   const auto reply = command(Command::kSensorRegister, body, 6);
   if (!reply) return reply.status();
+  if (reply->size() < 6) return Status(ErrorCode::kUnsupported, "the colour sensor of this Kinect cannot be read");
   return word_at(*reply, 4);
 }
 
@@ -152,7 +168,8 @@ Status KinectControl::write_control_word(std::uint16_t control, std::uint16_t va
   if (const auto reply = command(Command::kCameraControl, write, 2); !reply) return reply.status();
   const auto reply = command(Command::kCameraControl, read, 8);
   if (!reply) return reply.status();
-  if (word_at(*reply, 6) != value) return {ErrorCode::kUnsupported, "this Kinect ignores colour control " + hexadecimal(control)};
+  if (reply->size() < 8 || word_at(*reply, 6) != value)
+    return {ErrorCode::kUnsupported, "this Kinect ignores colour control " + hexadecimal(control)};
   return Status::ok();
 }
 
@@ -163,7 +180,8 @@ Status KinectControl::set_exposure_mode(bool is_automatic) {
   if (const auto reply = command(Command::kCameraControl, write, 2); !reply) return reply.status();
   const auto reply = command(Command::kCameraControl, read, 8);
   if (!reply) return reply.status();
-  if (word_at(*reply, 6) != mode) return {ErrorCode::kUnsupported, "this Kinect does not change its exposure mode"};
+  if (reply->size() < 8 || word_at(*reply, 6) != mode)
+    return {ErrorCode::kUnsupported, "this Kinect does not change its exposure mode"};
   return Status::ok();
 }
 

@@ -34,21 +34,25 @@ struct ColorControls {
   std::optional<double> gain;      ///< 1 to 16; implies manual exposure; model 1473 and K4W only
 };
 
-/// Not thread-safe. Every call is bounded: a reply is awaited for kReplyPatience, stale ones are thrown away.
+/// Not thread-safe. Every call is bounded: a reply is awaited for kReplyPatience, stale ones are thrown away, and what went wrong
+/// on the way is asked again, kMaxAttempts times in all (every request may be repeated).
 class KinectControl {
  public:
   explicit KinectControl(ControlTransport* transport) : transport_(transport) {}
   static constexpr std::chrono::milliseconds kReplyPatience{500};
   static constexpr std::chrono::microseconds kPollInterval{1000};
+  static constexpr int kMaxAttempts = 3;
 
-  /// The body of the reply, valid until the next call. kTimeout: no reply with this tag; kCorrupt: a reply that is none, or that
-  /// is shorter than `min_body_bytes`; kInvalid: the device refused (status word other than 0 [PS]).
+  /// The body of the reply, valid until the next call. kTimeout: no reply with this tag; kCorrupt: a reply that is none, or
+  /// that is shorter than `min_body_bytes`; else what the transport says, kUnavailable at once.
   [[nodiscard]] Result<std::span<const std::uint8_t>> command(Command command, std::span<const std::uint16_t> body,
                                                               std::size_t min_body_bytes);
+  /// kInvalid: the device refused (status word other than 0 [PS]).
   [[nodiscard]] Status write_register(Register address, std::uint16_t value);
 
-  /// What the device says of itself; the parts that it does not say, or says nonsense about, stay unset.
-  [[nodiscard]] KinectCalibration read_calibration();
+  /// What the device says of itself; what it does not know, or says nonsense about, stays unset. An error where it does not
+  /// answer at all: it would be another camera after the next start.
+  [[nodiscard]] Result<KinectCalibration> read_calibration();
   /// 640x480 Bayer at 30 Hz, unmirrored.
   [[nodiscard]] Status start_color();
   /// 640x480, 11 bits, 30 Hz, unmirrored; switches the projector on.
@@ -59,6 +63,8 @@ class KinectControl {
   [[nodiscard]] Status set_color(const ColorControls& controls, bool is_1414);
 
  private:
+  [[nodiscard]] Result<std::span<const std::uint8_t>> attempt(Command command, std::span<const std::uint16_t> body,
+                                                              std::size_t min_body_bytes);
   [[nodiscard]] Result<std::uint16_t> read_sensor(std::uint16_t address);
   [[nodiscard]] Status write_sensor(std::uint16_t address, std::uint16_t value, std::uint16_t mask);
   [[nodiscard]] Status set_sensor_mode(std::uint16_t bit, bool is_on);

@@ -104,7 +104,9 @@ Status KinectSource::connect() {
   device_ = std::move(device).value();
   control_ = std::make_unique<KinectControl>(device_.get());
   if (has_depth()) {
-    geometry_.calibration = control_->read_calibration();
+    Result<KinectCalibration> calibration = control_->read_calibration();
+    if (!calibration) return calibration.status();
+    geometry_.calibration = *calibration;
     geometry_.depth_table = make_depth_table(geometry_.calibration);
     if (kinect_options_.depth == DepthMode::kRegistered)
       geometry_.registration = DepthRegistration::create(geometry_.calibration, geometry_.depth_table);
@@ -147,11 +149,10 @@ void KinectSource::describe() {
 
 Status KinectSource::start_streams() {
   if (Status status = device_->start_transfers(has_depth()); !status) return status;
-  Status status = control_->start_color();
-  if (status)
-    status = control_->set_color(kinect_options_.color,
-                                 device_->camera().release == kReleaseOf1414 && device_->camera().product == kProductCamera);
-  if (status && has_depth()) status = control_->start_depth();
+  const bool is_1414 = device_->camera().product == kProductCamera && device_->camera().release == kReleaseOf1414;
+  Status status = has_depth() ? control_->start_depth() : Status::ok();  // first, or the first colour image has none
+  if (status) status = control_->start_color();
+  if (status) status = control_->set_color(kinect_options_.color, is_1414);
   if (!status) device_->stop_transfers();
   return status;
 }

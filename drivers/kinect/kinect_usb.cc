@@ -35,6 +35,12 @@ class DeviceList {
   ssize_t size_;
 };
 
+/// `count` elements, or none where libusb has none: it keeps the count of a descriptor that was cut off in its middle.
+template <typename T>
+std::span<const T> elements(const T* first, int count) {
+  return first != nullptr && count > 0 ? std::span<const T>(first, static_cast<std::size_t>(count)) : std::span<const T>();
+}
+
 std::optional<libusb_device_descriptor> descriptor_of(libusb_device* device) {
   libusb_device_descriptor descriptor{};
   if (libusb_get_device_descriptor(device, &descriptor) != LIBUSB_SUCCESS) return std::nullopt;
@@ -220,12 +226,11 @@ Result<StreamSetting> find_stream_setting(libusb_device* camera) {
   const std::unique_ptr<libusb_config_descriptor, void (*)(libusb_config_descriptor*)> owner(config,
                                                                                              libusb_free_config_descriptor);
   std::optional<StreamSetting> best;
-  for (const libusb_interface& interface : std::span(config->interface, config->bNumInterfaces)) {
-    for (const libusb_interface_descriptor& alternate :
-         std::span(interface.altsetting, static_cast<std::size_t>(interface.num_altsetting))) {
+  for (const libusb_interface& interface : elements(config->interface, config->bNumInterfaces)) {
+    for (const libusb_interface_descriptor& alternate : elements(interface.altsetting, interface.num_altsetting)) {
       if (alternate.bInterfaceNumber != kCameraInterface) continue;
       StreamSetting setting{alternate.bAlternateSetting, 0, 0};
-      for (const libusb_endpoint_descriptor& endpoint : std::span(alternate.endpoint, alternate.bNumEndpoints)) {
+      for (const libusb_endpoint_descriptor& endpoint : elements(alternate.endpoint, alternate.bNumEndpoints)) {
         if ((endpoint.bmAttributes & LIBUSB_TRANSFER_TYPE_MASK) != LIBUSB_TRANSFER_TYPE_ISOCHRONOUS) continue;
         const int bytes = (endpoint.wMaxPacketSize & 0x7ff) * (1 + (endpoint.wMaxPacketSize >> 11 & 3));  // USB 2.0, 9.6.6
         if (endpoint.bEndpointAddress == kColorEndpoint) setting.color_packet_bytes = bytes;

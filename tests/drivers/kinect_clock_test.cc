@@ -59,7 +59,8 @@ TEST(CounterClock, PausesOfAnyLengthAreBridged) {
   for (const std::int64_t pause_s : {0LL, 1LL, 36LL, 71LL, 72LL, 500LL}) {
     time_ns += pause_s * 1'000'000'000;
     for (int i = 0; i < 60; ++i, time_ns += kFrameNs) {
-      EXPECT_NEAR(static_cast<double>(clock.host_time_ns(counter.at(time_ns), time_ns + kTransportNs)), static_cast<double>(time_ns + kTransportNs), 1e5);
+      EXPECT_NEAR(static_cast<double>(clock.host_time_ns(counter.at(time_ns), time_ns + kTransportNs)),
+                  static_cast<double>(time_ns + kTransportNs), 1e5);
     }
   }
   EXPECT_EQ(clock.num_jumps(), 0U);

@@ -129,7 +129,8 @@ TEST(KinectControl, GivesUpWhenNoReplyComes) {
   camera.spoil = [](Bytes* reply) { reply->clear(); };
   KinectControl control(&camera);
   EXPECT_EQ(control.write_register(Register::kColorStream, 1).code(), ErrorCode::kTimeout);
-  EXPECT_LE(camera.slept, 2 * KinectControl::kReplyPatience);
+  EXPECT_EQ(camera.num_requests, KinectControl::kMaxAttempts);
+  EXPECT_LE(camera.slept, (KinectControl::kMaxAttempts + 1) * KinectControl::kReplyPatience);
 }
 
 TEST(KinectControl, ReplyToAnEarlierRequestIsThrownAway) {
@@ -170,14 +171,16 @@ TEST(KinectControl, StartsStreamsLastAndUnmirrored) {
   EXPECT_EQ(camera.registers[0x12], 3);
   EXPECT_EQ(camera.registers[0x47], 0);
   const std::pair<std::uint16_t, std::uint16_t> color_off{5, 0}, color_on{5, 1}, format{0x0c, 0};
-  const auto at = [&camera](const auto& write) { return std::find(camera.writes.begin(), camera.writes.end(), write) - camera.writes.begin(); };
+  const auto at = [&camera](const auto& write) {
+    return std::find(camera.writes.begin(), camera.writes.end(), write) - camera.writes.begin();
+  };
   EXPECT_LT(at(color_off), at(format));
   EXPECT_LT(at(format), at(color_on));
-  // The first refusal ends it: what follows would wait half a second each.
+  // The first that is not answered ends it: what follows would take as long.
   camera.spoil = [](Bytes* reply) { reply->clear(); };
   const int before = camera.num_requests;
   EXPECT_FALSE(control.start_depth().is_ok());
-  EXPECT_EQ(camera.num_requests, before + 1);
+  EXPECT_EQ(camera.num_requests, before + KinectControl::kMaxAttempts);
 }
 
 TEST(KinectControl, ReadsTheCalibration) {
@@ -188,8 +191,13 @@ TEST(KinectControl, ReadsTheCalibration) {
   registration[2 + 4 * 5 + 1] = 0x18;
   const float plane[4] = {7.5F, 2.3F, 120.0F, 0.1042F};
   std::memcpy(&zero_plane[kZeroPlaneOffset], plane, sizeof(plane));
-  camera.bodies = {{0x16 << 16 | 0x40, registration}, {0x16 << 16 | 0x41, {0, 0, 0, 0, 0, 0, 0, 0}}, {0x16 << 16, {0, 0, 200, 0}}, {0x04 << 16, zero_plane}};
-  const KinectCalibration calibration = control.read_calibration();
+  camera.bodies = {{0x16 << 16 | 0x40, registration},
+                   {0x16 << 16 | 0x41, {0, 0, 0, 0, 0, 0, 0, 0}},
+                   {0x16 << 16, {0, 0, 200, 0}},
+                   {0x04 << 16, zero_plane}};
+  const Result<KinectCalibration> result = control.read_calibration();
+  ASSERT_TRUE(result.is_ok()) << result.status().message();
+  const KinectCalibration& calibration = *result;
   ASSERT_TRUE(calibration.registration);
   EXPECT_EQ(calibration.registration->dx_start, 0x1811);
   ASSERT_TRUE(calibration.zero_plane);
@@ -198,18 +206,55 @@ TEST(KinectControl, ReadsTheCalibration) {
   EXPECT_EQ(calibration.const_shift, 200);
 }
 
+TEST(KinectControl, OneFaultOnTheWayChangesNothing) {
+  for (int fault = 0; fault < 3; ++fault) {
+    ScriptedCamera camera;
+    KinectControl control(&camera);
+    Bytes registration(kRegistrationBodyBytes, 1), zero_plane(322);
+    registration[0] = registration[1] = 0;
+    camera.bodies = {
+        {0x16 << 16 | 0x40, registration}, {0x16 << 16 | 0x41, Bytes(8)}, {0x16 << 16, {0, 0, 200, 0}}, {0x04 << 16, zero_plane}};
+    int num_replies = 0;
+    camera.spoil = [&num_replies, fault](Bytes* reply) {
+      if (num_replies++ != 0) return;
+      if (fault == 0) reply->clear();
+      if (fault == 1) (*reply)[0] = 'X';
+      if (fault == 2) reply->resize(reply->size() / 2);
+    };
+    const Result<KinectCalibration> calibration = control.read_calibration();
+    ASSERT_TRUE(calibration.is_ok()) << calibration.status().message();
+    EXPECT_TRUE(calibration->registration) << fault;
+    camera.spoil = [](Bytes* reply) { reply->clear(); };
+    EXPECT_FALSE(control.read_calibration().is_ok()) << "not another camera";
+  }
+}
+
+TEST(KinectControl, ADeviceThatIsGoneIsNotAskedAgain) {
+  ScriptedCamera camera;
+  camera.send_status = {ErrorCode::kUnavailable, "gone"};
+  KinectControl control(&camera);
+  EXPECT_EQ(control.read_calibration().status().code(), ErrorCode::kUnavailable);
+  EXPECT_EQ(camera.slept.count(), 0);
+}
+
 TEST(KinectControl, CalibrationThatMakesNoSenseIsNotBelieved) {
   ScriptedCamera camera;
   KinectControl control(&camera);
   Bytes zero_plane(322);
   const float plane[4] = {7.5F, std::numeric_limits<float>::quiet_NaN(), 120.0F, 0.1042F};
   std::memcpy(&zero_plane[kZeroPlaneOffset], plane, sizeof(plane));
-  camera.bodies = {{0x16 << 16 | 0x40, Bytes(kRegistrationBodyBytes)}, {0x16 << 16, {0, 0, 0, 0}}, {0x04 << 16, zero_plane}};
-  const KinectCalibration calibration = control.read_calibration();
+  camera.bodies = {{0x16 << 16 | 0x40, Bytes(kRegistrationBodyBytes)},
+                   {0x16 << 16 | 0x41, Bytes(8)},
+                   {0x16 << 16, Bytes(4)},
+                   {0x04 << 16, zero_plane}};
+  const Result<KinectCalibration> result = control.read_calibration();
+  ASSERT_TRUE(result.is_ok()) << result.status().message();
+  const KinectCalibration& calibration = *result;
   EXPECT_FALSE(calibration.registration) << "all zeros: the device has none";
   EXPECT_FALSE(calibration.zero_plane);
   EXPECT_FALSE(calibration.const_shift);
   EXPECT_EQ(calibration.padding_start_lines, 0);
+  EXPECT_FALSE(parse_padding(Bytes(8, 0xff))) << "more rows than there are";
   EXPECT_TRUE(nominal_camera(calibration, false).validate().is_ok());
 }
 

@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+#include "drivers/kinect/kinect_depth.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
-#include "drivers/kinect/kinect_depth.h"
 #include "drivers/kinect/kinect_protocol.h"
 #include "drivers/kinect/kinect_registration.h"
 #include "drivers/packed_pixels.h"
@@ -50,7 +51,8 @@ TEST(KinectDepth, FullFrameUnpacksLikeBitByBit) {
   unpack_pixels(packed.data(), kNumPixels, 11, pixels.data());
   for (std::size_t i = 0; i < kNumPixels; i += 7) {
     std::uint16_t expected = 0;
-    for (std::size_t bit = 11 * i; bit < 11 * i + 11; ++bit) expected = static_cast<std::uint16_t>(expected << 1 | (packed[bit / 8] >> (7 - bit % 8) & 1));
+    for (std::size_t bit = 11 * i; bit < 11 * i + 11; ++bit)
+      expected = static_cast<std::uint16_t>(expected << 1 | (packed[bit / 8] >> (7 - bit % 8) & 1));
     ASSERT_EQ(pixels[i], expected) << i;
   }
 }
@@ -128,7 +130,8 @@ TEST(KinectRegistration, SurfacesShiftByBaselineTimesFocalLengthOverDistance) {
     EXPECT_EQ(std::count(registered.pixels.begin(), registered.pixels.end(), 0), static_cast<std::ptrdiff_t>(kNumPixels - 1));
     const double parallax_px = plane.color_distance_cm * 10 * plane.focal_px() / *hit;
     const double at_infinity_px = plane.color_distance_cm * 10 * plane.focal_px() / (10 * plane.reference_distance_cm);
-    EXPECT_NEAR(at % kWidth, 300 + 5 + 1 + at_infinity_px - parallax_px, 1.5) << "nearer: further to the left in the colour image";
+    EXPECT_NEAR(at % kWidth, 300 + 5 + 1 + at_infinity_px - parallax_px, 1.5)
+        << "nearer: further to the left in the colour image";
     EXPECT_EQ(at / kWidth, 200 - 3 + 1);
   }
 }
@@ -142,8 +145,10 @@ TEST(KinectRegistration, RealCoefficientsGiveASmoothMapOfTheWholeImage) {
   const std::vector<std::uint16_t> wall(kNumPixels, 900);
   Image<std::uint16_t> registered;
   registration->apply(wall, &registered);
-  const auto num_hit = std::count_if(registered.pixels.begin(), registered.pixels.end(), [](std::uint16_t mm) { return mm != 0; });
-  EXPECT_GT(static_cast<double>(num_hit), 0.75 * kNumPixels) << "the colour camera sees wider: a frame stays empty, the inside has no holes";
+  const auto num_hit =
+      std::count_if(registered.pixels.begin(), registered.pixels.end(), [](std::uint16_t mm) { return mm != 0; });
+  EXPECT_GT(static_cast<double>(num_hit), 0.75 * kNumPixels)
+      << "the colour camera sees wider: a frame stays empty, the inside has no holes";
   for (int y = 60; y < 420; ++y) {
     for (int x = 80; x < 560; ++x) ASSERT_EQ(registered.at(x, y), table[900]) << x << ' ' << y;
   }

@@ -18,13 +18,15 @@ TEST(KinectOptions, DefaultsLeaveTheDeviceAlone) {
   ASSERT_TRUE(options.is_ok()) << options.status().message();
   EXPECT_TRUE(options->selector.empty());
   EXPECT_EQ(options->depth, DepthMode::kRegistered);
-  EXPECT_FALSE(options->color.auto_exposure || options->color.auto_white_balance || options->color.exposure_us || options->color.gain);
+  EXPECT_FALSE(options->color.auto_exposure || options->color.auto_white_balance || options->color.exposure_us ||
+               options->color.gain);
   EXPECT_TRUE(options->is_led_status);
   EXPECT_FALSE(options->tilt_deg);
 }
 
 TEST(KinectOptions, EverythingCanBeSet) {
-  const Result<KinectOptions> options = parse("kinect://A00362A08602047A?depth=raw&exposure_us=8000&gain=2.5&white_balance=manual&led=off&tilt_deg=-12.5");
+  const Result<KinectOptions> options =
+      parse("kinect://A00362A08602047A?depth=raw&exposure_us=8000&gain=2.5&white_balance=manual&led=off&tilt_deg=-12.5");
   ASSERT_TRUE(options.is_ok()) << options.status().message();
   EXPECT_EQ(options->selector, "A00362A08602047A");
   EXPECT_EQ(options->depth, DepthMode::kRaw);
@@ -40,9 +42,14 @@ TEST(KinectOptions, EverythingCanBeSet) {
 
 TEST(KinectOptions, MistakesAreNamed) {
   const std::pair<const char*, const char*> mistakes[] = {
-      {"kinect://?dept=raw", "dept"},           {"kinect://?depth=metric", "registered, raw, off"}, {"kinect://?exposure_us=0", "100 to 33000"},
-      {"kinect://?gain=17", "1 to 16"},         {"kinect://?led=blue", "green"},                    {"kinect://?tilt_deg=90", "-31 to 31"},
-      {"kinect://?auto_exposure=yes", "0, 1"},  {"kinect://?auto_exposure=1&exposure_us=5000", "contradicts"},
+      {"kinect://?dept=raw", "dept"},
+      {"kinect://?depth=metric", "registered, raw, off"},
+      {"kinect://?exposure_us=0", "100 to 33000"},
+      {"kinect://?gain=17", "1 to 16"},
+      {"kinect://?led=blue", "green"},
+      {"kinect://?tilt_deg=90", "-31 to 31"},
+      {"kinect://?auto_exposure=yes", "0, 1"},
+      {"kinect://?auto_exposure=1&exposure_us=5000", "contradicts"},
   };
   for (const auto& [url, hint] : mistakes) {
     const Result<KinectOptions> options = parse(url);

@@ -39,7 +39,8 @@ class PacketMaker {
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint8_t kind = i == 0 ? kFlagStart : i + 1 == count ? kFlagEnd : kFlagMiddle;
       const std::size_t begin = i * layout_.payload_bytes, end = std::min(begin + layout_.payload_bytes, frame.size());
-      packets.push_back(packet(kind, {frame.begin() + static_cast<std::ptrdiff_t>(begin), frame.begin() + static_cast<std::ptrdiff_t>(end)}));
+      packets.push_back(
+          packet(kind, {frame.begin() + static_cast<std::ptrdiff_t>(begin), frame.begin() + static_cast<std::ptrdiff_t>(end)}));
     }
     stamp_ += kFrameTicks;
     return packets;

@@ -220,7 +220,8 @@ void disturb(std::vector<Packet>* packets, std::mt19937* random) {
     case 3: std::shuffle(at(i), at(end), *random); break;
     case 4: (*packets)[i].resize(below((*packets)[i].size() + 1)); break;
     case 5:
-      if (!(*packets)[i].empty()) (*packets)[i][below(std::min<std::size_t>((*packets)[i].size(), 8))] = static_cast<std::uint8_t>((*random)());
+      if (!(*packets)[i].empty())
+        (*packets)[i][below(std::min<std::size_t>((*packets)[i].size(), 8))] = static_cast<std::uint8_t>((*random)());
       break;
     case 6: (*packets)[i].assign(below(40), static_cast<std::uint8_t>((*random)())); break;
     case 7: {  // a packet comes again much later

@@ -26,7 +26,8 @@ TEST(KinectReceiver, FramesComeOutInOrderWithTheirTimes) {
   KinectReceiver receiver;
   PacketMaker maker(color_layout());
   EXPECT_EQ(receiver.take(Stream::kColor), nullptr);
-  for (std::uint32_t i = 0; i < 2; ++i) send(&receiver, Stream::kColor, maker.packets_of(numbered_frame(color_layout(), i)), i * 33'000'000);
+  for (std::uint32_t i = 0; i < 2; ++i)
+    send(&receiver, Stream::kColor, maker.packets_of(numbered_frame(color_layout(), i)), i * 33'000'000);
   for (std::uint32_t i = 0; i < 2; ++i) {
     RawFrame* const frame = receiver.take(Stream::kColor);
     ASSERT_NE(frame, nullptr);
@@ -68,9 +69,7 @@ TEST(KinectReceiver, WaitEndsForFramesForLossAndForTheEnd) {
   packets.erase(packets.begin() + 9);
   packets.push_back(maker.packets_of(numbered_frame(color_layout(), 1)).front());  // only now is it known that none comes late
   const auto far = steady_clock::now() + std::chrono::seconds(30);
-  std::thread usb([&] {
-    send(&receiver, Stream::kColor, packets, 1);
-  });
+  std::thread usb([&] { send(&receiver, Stream::kColor, packets, 1); });
   receiver.wait_until(far);
   usb.join();
   EXPECT_EQ(receiver.take(Stream::kColor), nullptr);

@@ -53,7 +53,10 @@ class FuzzedCamera final : public ControlTransport {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   FuzzedCamera camera(data, size);
   KinectControl control(&camera);
-  const KinectCalibration calibration = control.read_calibration();
+  const KinectCalibration calibration = [&control] {
+    const Result<KinectCalibration> result = control.read_calibration();
+    return result ? *result : KinectCalibration{};
+  }();
   if (!nominal_camera(calibration, false).validate() || !nominal_camera(calibration, true).validate()) std::abort();
   ColorControls controls;
   controls.exposure_us = 5000;
