@@ -157,7 +157,12 @@ Status RecordingFolder::append_acceleration(std::int64_t stamp_ns, const Eigen::
 
 Status RecordingFolder::write_camera(const RgbdCamera& camera) const { return write_text_file(path_ + "/camera.toml", format_camera_toml(camera)); }
 
-Status RecordingFolder::sync() const { return ::syncfs(color_index_.get()) == 0 ? Status::ok() : io_error(path_); }
+Status RecordingFolder::sync() const {
+  for (const UniqueFd* index : {&depth_index_, &accelerometer_, &color_index_}) {
+    if (index->is_open() && ::fsync(index->get()) != 0) return io_error(path_);
+  }
+  return Status::ok();
+}
 
 void RecordingFolder::discard() {
   for (UniqueFd* index : {&color_index_, &depth_index_, &accelerometer_}) index->reset();

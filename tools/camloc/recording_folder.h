@@ -41,7 +41,8 @@ class RecordingFolder {
   /// readers of such files expect.
   [[nodiscard]] Status append_acceleration(std::int64_t stamp_ns, const Eigen::Vector3d& acceleration);
   [[nodiscard]] Status write_camera(const RgbdCamera& camera) const;
-  /// Waits until everything is on the disk; its errors are those of the disk.
+  /// Waits until the indices are on the disk; its errors are those of the disk. The images follow when the kernel writes them, within
+  /// half a minute: waiting for them, syncfs() waited for everybody else's files, too, up to a minute beside a compiler.
   [[nodiscard]] Status sync() const;
   /// Deletes the folder of a recording without a frame.
   void discard();
