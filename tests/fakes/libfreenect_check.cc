@@ -9,56 +9,26 @@
 // Exit codes: 0 all frames right and at least --min-hz of each stream, 1 not, 2 usage.
 #include <libfreenect.h>
 #include <libfreenect_registration.h>
-#include <sys/resource.h>
+#include <sys/time.h>
 #include <xxhash.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <chrono>
-#include <cinttypes>
+#include <cstdint>
 #include <cstdio>
-#include <cstdlib>
-#include <fstream>
-#include <map>
-#include <new>
-#include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "tests/fakes/kinect_frames.h"
-
-namespace {
-// malloc cannot be counted portably from inside; libfreenect and libusb are C, so the program's own interposer counts theirs, too.
-std::atomic<std::uint64_t> num_allocations{0};
-}  // namespace
-
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-extern "C" void* __libc_malloc(std::size_t size);
-extern "C" void* __libc_calloc(std::size_t count, std::size_t size);
-extern "C" void* malloc(std::size_t size) {
-  num_allocations.fetch_add(1, std::memory_order_relaxed);
-  return __libc_malloc(size);
-}
-extern "C" void* calloc(std::size_t count, std::size_t size) {
-  num_allocations.fetch_add(1, std::memory_order_relaxed);
-  return __libc_calloc(count, size);
-}
-#endif
+#include "tests/fakes/stream_check.h"
 
 namespace {
 
 using namespace camloc::fakes;
 
-struct Received {
-  std::uint32_t stamp = 0;
-  std::uint64_t hash = 0;
-};
-
 struct Recorder {
-  std::vector<Received> video, depth;
+  std::vector<ReceivedFrame> video, depth;
   std::vector<std::uint8_t> packed;  // scratch
 };
 
@@ -80,52 +50,6 @@ void on_depth(freenect_device* device, void* bytes, std::uint32_t stamp) {
     for (num_pending += 11; num_pending >= 8; num_pending -= 8) recorder.packed[at++] = static_cast<std::uint8_t>(pending >> (num_pending - 8));
   }
   recorder.depth.push_back({stamp, XXH3_64bits(recorder.packed.data(), recorder.packed.size())});
-}
-
-/// Hashes of the frames of a stream in the fake's log, by stamp.
-std::map<std::uint32_t, std::uint64_t> sent_frames(const std::string& log_file, const std::string& stream) {
-  std::map<std::uint32_t, std::uint64_t> frames;
-  std::ifstream log(log_file);
-  std::string line, name, format, hash;
-  std::uint64_t index = 0;
-  std::uint32_t stamp = 0;
-  std::int64_t monotonic_ns = 0;
-  int damaged = 0;
-  while (std::getline(log, line)) {
-    std::istringstream fields(line);
-    if (fields >> name >> index >> stamp >> monotonic_ns >> format >> damaged >> hash && name == stream)
-      frames[stamp] = std::strtoull(hash.c_str(), nullptr, 16);
-  }
-  return frames;
-}
-
-double seconds_now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-double cpu_seconds() {
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-/// Says how the received frames compare with those sent; whether all were right and there were enough.
-bool report(const char* name, const std::vector<Received>& received, const std::string& log_file, double seconds, double min_hz) {
-  const auto sent = sent_frames(log_file, name);
-  std::uint64_t num_wrong = 0;
-  std::size_t num_expected = 0;
-  for (const Received& frame : received) {
-    const auto found = sent.find(frame.stamp);
-    if (found == sent.end() || found->second != frame.hash) ++num_wrong;
-  }
-  if (!received.empty())
-    num_expected = static_cast<std::size_t>(std::count_if(sent.begin(), sent.end(), [&](const auto& frame) {
-      const auto since = [&](std::uint32_t stamp) { return stamp - received.front().stamp; };  // the counter wraps
-      return since(frame.first) <= since(received.back().stamp);
-    }));
-  const double hz = static_cast<double>(received.size()) / seconds;
-  std::printf("%s: %zu frames, %.2f Hz, %" PRIu64 " wrong, %zu missed\n", name, received.size(), hz, num_wrong,
-              num_expected - std::min(num_expected, received.size()));
-  return num_wrong == 0 && hz >= min_hz && !received.empty();
 }
 
 /// The depth-to-colour table that libfreenect makes of the device's registration block, against the two pinhole cameras it was made of.
@@ -190,31 +114,20 @@ int main(int argc, char** argv) {
   freenect_set_depth_mode(device, freenect_find_depth_mode(FREENECT_RESOLUTION_MEDIUM, FREENECT_DEPTH_11BIT));
   const bool is_registered = !wants_registration || check_registration(device);
 
-  const double open_cpu_s = cpu_seconds();
   if (wants_depth && freenect_start_depth(device) < 0) return 1;
   if (wants_video && freenect_start_video(device) < 0) return 1;
-  const double begin_s = seconds_now();
-  double warm_s = 0;
-  std::uint64_t warm_allocations = 0;
-  while (seconds_now() - begin_s < seconds) {
+  StreamCost cost(seconds);
+  while (cost.goes_on()) {
     timeval timeout{0, 100'000};
     if (freenect_process_events_timeout(context, &timeout) < 0) break;
-    if (warm_s == 0 && seconds_now() - begin_s > seconds / 4) {
-      warm_s = seconds_now();
-      warm_allocations = num_allocations;
-    }
   }
-  const double streamed_s = seconds_now() - begin_s;
-  const std::uint64_t allocations = num_allocations - warm_allocations;
-  const double cpu_s = cpu_seconds() - open_cpu_s;
+  cost.print("libfreenect");
   if (wants_depth) freenect_stop_depth(device);
   if (wants_video) freenect_stop_video(device);
   freenect_close_device(device);
   freenect_shutdown(context);
 
-  std::printf("libfreenect: %.2f s, CPU %.1f %% of a core, %.0f allocations a second\n", streamed_s, 100 * cpu_s / streamed_s,
-              static_cast<double>(allocations) / (streamed_s * 3 / 4));
-  const bool depth_ok = !wants_depth || report("depth", recorder.depth, log_file, streamed_s, min_hz);
-  const bool video_ok = !wants_video || report("video", recorder.video, log_file, streamed_s, min_hz);
+  const bool depth_ok = !wants_depth || report_stream("depth", recorder.depth, log_file, cost.streamed_s(), min_hz);
+  const bool video_ok = !wants_video || report_stream("video", recorder.video, log_file, cost.streamed_s(), min_hz);
   return depth_ok && video_ok && is_registered ? 0 : 1;
 }
