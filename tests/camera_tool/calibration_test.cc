@@ -206,7 +206,8 @@ TEST(CalibrationTest, ChessboardWithRegisteredDepth) {
   const DepthFit& depth = *calibration->depth;
   EXPECT_NEAR(depth.scale, 1.01, 4 * depth.scale_sigma + 1e-3) << report;
   EXPECT_LT(depth.scale_sigma, 5e-3) << report;
-  if (depth.has_offset) EXPECT_NEAR(depth.offset_m, 0.004, 4 * depth.offset_sigma_m + 1e-3) << report;
+  ASSERT_TRUE(depth.has_offset) << report;
+  EXPECT_NEAR(depth.offset_m, 0.004, 4 * depth.offset_sigma_m + 1e-3) << report;
   const double z = depth.far_m;
   EXPECT_NEAR(depth.noise.sigma_m(z) / truth.depth_noise.sigma_m(z), 1, 0.15) << report;
   EXPECT_NE(report.find("WARNING     depth is 1.0"), std::string::npos) << report;
