@@ -62,8 +62,18 @@ class ImagePyramid {
   [[nodiscard]] const PaddedImage& level(int level) const { return levels_[static_cast<std::size_t>(level)]; }
   /// scale_factor ^ level
   [[nodiscard]] float scale(int level) const { return scales_[static_cast<std::size_t>(level)]; }
+  /// Where column x and row y of a level lie on level 0, pixel centres at integers. Sizes are rounded to whole pixels, so that the
+  /// ratio of two levels is not quite the scale factor: on the coarsest of eight levels of 640 pixels that is 1.4 px at the edge.
+  [[nodiscard]] float column_on_base(int level, float x) const { return (x + 0.5F) * ratio(level, &PaddedImage::width) - 0.5F; }
+  [[nodiscard]] float row_on_base(int level, float y) const { return (y + 0.5F) * ratio(level, &PaddedImage::height) - 0.5F; }
+  [[nodiscard]] float column_on_level(int level, float u) const { return (u + 0.5F) / ratio(level, &PaddedImage::width) - 0.5F; }
+  [[nodiscard]] float row_on_level(int level, float v) const { return (v + 0.5F) / ratio(level, &PaddedImage::height) - 0.5F; }
 
  private:
+  [[nodiscard]] float ratio(int level, int PaddedImage::*size) const {
+    return static_cast<float>(levels_[0].*size) / static_cast<float>(levels_[static_cast<std::size_t>(level)].*size);
+  }
+
   std::vector<PaddedImage> levels_;
   std::vector<float> scales_;
   std::vector<ExactResize> resizes_;  ///< resizes_[i] makes level i + 1 from level i

@@ -65,10 +65,9 @@ struct OrbExtractor::Impl {
     const std::span<const Corner> corners = selector.select(image, count);
     if (corners.empty()) return;
     blur_level(image);
-    const float scale = pyramid.scale(level);
     for (const Corner& corner : corners) {
-      Keypoint keypoint{(static_cast<float>(corner.x) + 0.5F) * scale - 0.5F, (static_cast<float>(corner.y) + 0.5F) * scale - 0.5F, 0,
-                        static_cast<float>(corner.score), static_cast<std::uint8_t>(level)};
+      Keypoint keypoint{pyramid.column_on_base(level, static_cast<float>(corner.x)), pyramid.row_on_base(level, static_cast<float>(corner.y)),
+                        0, static_cast<float>(corner.score), static_cast<std::uint8_t>(level)};
       features.descriptors.push_back(describe_at(image, corner.x, corner.y, &keypoint));
       features.keypoints.push_back(keypoint);
     }
@@ -85,6 +84,10 @@ struct OrbExtractor::Impl {
     return pyramid.num_levels() > 0 && !image.empty() && image.width == pyramid.level(0).width && image.height == pyramid.level(0).height &&
            image.stride >= image.width;
   }
+
+  /// The pixel of its level that a keypoint is on.
+  [[nodiscard]] int column_of(const Keypoint& k) const { return static_cast<int>(std::lrint(pyramid.column_on_level(k.level, k.u))); }
+  [[nodiscard]] int row_of(const Keypoint& k) const { return static_cast<int>(std::lrint(pyramid.row_on_level(k.level, k.v))); }
 
   void clear() {
     features.keypoints.clear();
@@ -119,18 +122,28 @@ const Features& OrbExtractor::extract(ImageView<std::uint8_t> image) {
   return impl_->features;
 }
 
+void OrbExtractor::copy_patches(std::vector<FeaturePatch>* patches) const {
+  static_assert(FeaturePatch::kHalf <= kOrbBorder);
+  patches->resize(impl_->features.size());
+  for (std::size_t i = 0; i < patches->size(); ++i) {
+    const Keypoint& keypoint = impl_->features.keypoints[i];
+    const PaddedImage& level = impl_->pyramid.level(keypoint.level);
+    const int x = impl_->column_of(keypoint), y = impl_->row_of(keypoint);
+    std::uint8_t* out = (*patches)[i].pixels.data();
+    for (int dy = -FeaturePatch::kHalf; dy <= FeaturePatch::kHalf; ++dy, out += FeaturePatch::kSide)
+      std::copy_n(level.row(y + dy) + x - FeaturePatch::kHalf, FeaturePatch::kSide, out);
+  }
+}
+
 const Features& OrbExtractor::describe(ImageView<std::uint8_t> image, const std::vector<Keypoint>& keypoints) {
   Impl& impl = *impl_;
   impl.clear();
   if (!impl.has_size_of(image)) return impl.features;
   impl.pyramid.build(image);
-  const auto level_pixel = [&](float full_size_px, int level) {
-    return static_cast<int>(std::lrint(full_size_px * (1.F / impl.pyramid.scale(level))));
-  };
   for (const Keypoint& keypoint : keypoints) {
     if (keypoint.level >= impl.pyramid.num_levels()) continue;
     const PaddedImage& level = impl.pyramid.level(keypoint.level);
-    const int x = level_pixel(keypoint.u, keypoint.level), y = level_pixel(keypoint.v, keypoint.level);
+    const int x = impl.column_of(keypoint), y = impl.row_of(keypoint);
     const bool is_inside = x >= kOrbBorder && y >= kOrbBorder && x < level.width - kOrbBorder && y < level.height - kOrbBorder;
     if (is_inside) impl.features.keypoints.push_back(keypoint);
   }
@@ -141,8 +154,7 @@ const Features& OrbExtractor::describe(ImageView<std::uint8_t> image, const std:
     for (std::size_t i = 0; i < impl.features.size(); ++i) {
       Keypoint& keypoint = impl.features.keypoints[i];
       if (keypoint.level != level) continue;
-      impl.features.descriptors[i] =
-          impl.describe_at(level_image, level_pixel(keypoint.u, level), level_pixel(keypoint.v, level), &keypoint);
+      impl.features.descriptors[i] = impl.describe_at(level_image, impl.column_of(keypoint), impl.row_of(keypoint), &keypoint);
     }
   }
   return impl.features;

@@ -7,9 +7,11 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "core/base/frame.h"
 #include "core/features/descriptor.h"
+#include "core/features/feature_patch.h"
 
 namespace camloc {
 
@@ -34,6 +36,8 @@ class OrbExtractor {
   /// Features of the image, ordered by level, then row, then column. The reference stays valid until the next call.
   /// An image of another size, or too small for one descriptor patch, gives no features.
   const Features& extract(ImageView<std::uint8_t> image);
+  /// The pixels around each feature of the last extract(). Resizes `patches` to their number.
+  void copy_patches(std::vector<FeaturePatch>* patches) const;
 
   /// Orientation and descriptor for given keypoints (u, v, level are read; angle is set) of the image: for tests
   /// against cv::ORB and for tools. Keypoints closer than 19 px (of their level) to the border are dropped.

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "tests/features/reference_images.h"
 
 namespace camloc {
@@ -66,6 +68,38 @@ TEST(ImagePyramid, LevelsEqualRepeatedOpenCvResize) {
 TEST(ImagePyramid, StopsWhereNothingIsLeft) {
   EXPECT_EQ(ImagePyramid(640, 1, 8, 1.2F).num_levels(), 4);
   EXPECT_EQ(ImagePyramid(1, 1, 8, 3.F).num_levels(), 1);
+}
+
+/// Where the edge between dark on the left and bright on the right lies in the first row, counted from the image's border.
+double edge_of(const PaddedImage& image) {
+  double dark = 0;
+  for (int x = 0; x < image.width; ++x) dark += (220.0 - image.row(0)[x]) / 200.0;
+  return dark;
+}
+
+// Edges at known columns, twenty side by side to be rid of the sampling.
+TEST(ImagePyramid, KnowsWhereItsPixelsLie) {
+  constexpr int kWidth = 640, kHeight = 470;
+  ImagePyramid pyramid(kWidth, kHeight, 8, 1.2F);
+  for (const int middle : {60, 320, 590}) {
+    std::array<double, 8> mean_error{};
+    for (int edge = middle - 10; edge < middle + 10; ++edge) {
+      cv::Mat image(kHeight, kWidth, CV_8UC1, cv::Scalar(220));
+      image.colRange(0, edge) = 20;
+      pyramid.build(view_of(image));
+      for (int level = 0; level < 8; ++level) {
+        const auto at = static_cast<float>(edge_of(pyramid.level(level)) - 0.5);
+        mean_error[static_cast<std::size_t>(level)] += (pyramid.column_on_base(level, at) + 0.5 - edge) / 20;
+      }
+    }
+    for (int level = 0; level < 8; ++level) EXPECT_NEAR(mean_error[static_cast<std::size_t>(level)], 0, 0.15) << level << " " << middle;
+  }
+  for (int level = 0; level < 8; ++level) {
+    EXPECT_NEAR(pyramid.row_on_base(level, static_cast<float>(pyramid.level(level).height) - 0.5F), kHeight - 0.5, 1e-3);
+    EXPECT_NEAR(pyramid.row_on_base(level, -0.5F), -0.5, 1e-3);
+    EXPECT_NEAR(pyramid.column_on_level(level, pyramid.column_on_base(level, 31)), 31, 1e-3);
+    EXPECT_NEAR(pyramid.row_on_level(level, pyramid.row_on_base(level, 31)), 31, 1e-3);
+  }
 }
 
 }  // namespace

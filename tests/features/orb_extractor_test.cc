@@ -10,15 +10,21 @@
 #include <opencv2/features2d.hpp>
 
 #include "core/features/hamming.h"
+#include "core/features/image_pyramid.h"
 #include "tests/features/reference_images.h"
 
 namespace camloc {
 namespace {
 
-std::vector<Keypoint> to_keypoints(const std::vector<cv::KeyPoint>& reference) {
+/// cv::ORB multiplies the pixel of the level by the scale; ours is where that pixel lies in the image.
+std::vector<Keypoint> to_keypoints(const std::vector<cv::KeyPoint>& reference, const ImagePyramid& pyramid) {
   std::vector<Keypoint> keypoints;
-  for (const cv::KeyPoint& keypoint : reference)
-    keypoints.push_back({keypoint.pt.x, keypoint.pt.y, 0, keypoint.response, static_cast<std::uint8_t>(keypoint.octave)});
+  for (const cv::KeyPoint& keypoint : reference) {
+    const float scale = pyramid.scale(keypoint.octave);
+    keypoints.push_back({pyramid.column_on_base(keypoint.octave, std::round(keypoint.pt.x / scale)),
+                         pyramid.row_on_base(keypoint.octave, std::round(keypoint.pt.y / scale)), 0, keypoint.response,
+                         static_cast<std::uint8_t>(keypoint.octave)});
+  }
   return keypoints;
 }
 
@@ -50,7 +56,7 @@ void expect_descriptors_of_opencv(const cv::Mat& image, int num_levels, float sc
   options.num_levels = num_levels;
   options.scale_factor = scale_factor;
   OrbExtractor extractor(image.cols, image.rows, options);
-  const Features& features = extractor.describe(view_of(image), to_keypoints(reference));
+  const Features& features = extractor.describe(view_of(image), to_keypoints(reference, ImagePyramid(image.cols, image.rows, num_levels, scale_factor)));
   ASSERT_EQ(features.size(), reference.size());  // cv::ORB keeps 31 px from the border, more than the 19 px needed
   std::size_t num_equal = 0, sum = 0;
   double worst_angle = 0;
@@ -113,6 +119,25 @@ TEST(OrbExtractor, ExtractAndDescribeAgree) {
   const Features extracted = extractor.extract(view_of(image));
   const Features described = extractor.describe(view_of(image), extracted.keypoints);
   EXPECT_TRUE(is_same(extracted, described));
+}
+
+TEST(OrbExtractor, PatchesAreThePixelsAroundTheFeatures) {
+  const cv::Mat image = textured_image(601, 467, 6);
+  OrbExtractor extractor(601, 467, OrbOptions{});
+  const Features features = extractor.extract(view_of(image));
+  std::vector<FeaturePatch> patches;
+  extractor.copy_patches(&patches);
+  ASSERT_EQ(patches.size(), features.size());
+  ImagePyramid pyramid(601, 467, 8, 1.2F);
+  pyramid.build(view_of(image));
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    const Keypoint& keypoint = features.keypoints[i];
+    const PaddedImage& level = pyramid.level(keypoint.level);
+    const auto x = static_cast<int>(std::lround((keypoint.u + 0.5) * level.width / 601 - 0.5));
+    const auto y = static_cast<int>(std::lround((keypoint.v + 0.5) * level.height / 467 - 0.5));
+    for (const auto [dx, dy] : {std::pair(0, 0), std::pair(-8, -8), std::pair(8, -3), std::pair(5, 8)})
+      ASSERT_EQ(patches[i].at(dx, dy), level.row(y + dy)[x + dx]);
+  }
 }
 
 TEST(OrbExtractor, CoversTheImageEvenly) {
