@@ -41,4 +41,10 @@ ViewFeatures ViewExtractor::extract(const Frame& frame) {
   return view;
 }
 
+ViewFeatures ViewExtractor::extract_with_patches(const Frame& frame) {
+  ViewFeatures view = extract(frame);
+  extractor_.copy_patches(&view.patches);
+  return view;
+}
+
 }  // namespace camloc
