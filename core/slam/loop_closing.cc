@@ -94,6 +94,9 @@ PoseGraph LoopCloser::segment_graph(std::uint32_t segment) const {
       graph.edges.push_back({c.keyframe, k, T_i_j, link_covariance(T_i_j, c.num_shared)});
     }
   }
+  for (const PoseGraphEdge& link : links_) {
+    if (map_->keyframe(link.i).segment == segment) graph.edges.push_back(link);
+  }
   return graph;
 }
 

@@ -37,6 +37,8 @@ class LoopCloser {
   LoopCloser& operator=(const LoopCloser&) = delete;
 
   void begin_segment(const SegmentBegin& begin) { reckoning_.begin_segment(begin); }
+  /// A relative pose of two keyframes of one segment that is known otherwise than by common landmarks.
+  void add_link(const PoseGraphEdge& link) { links_.push_back(link); }
   /// A keyframe that is in the map with all it shares with others. `places` holds keyframes that may have been seen before.
   LoopReport consider(std::uint32_t keyframe, const PlaceIndex& places);
 
@@ -57,6 +59,7 @@ class LoopCloser {
   LandmarkSet place_landmarks_;
   std::vector<LoopMatch> pending_;
   std::vector<PoseGraphEdge> edges_;   ///< of all loops closed so far
+  std::vector<PoseGraphEdge> links_;   ///< see add_link()
 };
 
 }  // namespace camloc

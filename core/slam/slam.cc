@@ -6,6 +6,7 @@
 
 #include "core/geometry/pose_refinement.h"
 #include "core/slam/keyframe_insertion.h"
+#include "core/slam/sighting_refinement.h"
 
 namespace camloc {
 namespace {
@@ -15,11 +16,18 @@ namespace {
 // 1.1 to 0.9 cm).
 constexpr double kDepthSigmaShare = 0.6, kDepthKernelSigmas = 1.3;
 
+// Common landmarks of two views one after the other.
+constexpr std::uint32_t kStrongLink = 150;
+
 RegistrationOptions registration_options(const SlamOptions& options) {
   RegistrationOptions registration;
   registration.use_depth = options.use_depth_in_tracking;
   registration.max_features = options.max_features;
   return registration;
+}
+
+std::size_t num_with_depth(const ViewFeatures& view) {
+  return static_cast<std::size_t>(std::count_if(view.depth_m.begin(), view.depth_m.end(), [](float z) { return z > 0; }));
 }
 
 }  // namespace
@@ -30,22 +38,29 @@ Slam::Slam(const RgbdCamera& camera, const SlamOptions& options)
       map_(camera, options.scale_factor, options.num_levels),
       registration_(camera, options.scale_factor, registration_options(options)),
       tracker_(options.tracker, &map_, &registration_),
-      loops_(options.loops, &map_, &registration_) {}
+      loops_(options.loops, &map_, &registration_),
+      bridge_(camera, options.bridge) {}
 
-ViewReport Slam::add_view(std::uint64_t frame, const ViewFeatures& view) {
+ViewReport Slam::add_view(std::uint64_t frame, const ViewFeatures& view, const ViewThumbnail& thumbnail) {
   ViewReport report;
   ++counts_.num_views;
   if (map_.keyframes().empty()) {
-    if (!begin_segment(frame, view, &report)) ++counts_.num_lost;
+    if (begin_segment(frame, view, &report)) begin_bridge(view.stamp_ns, thumbnail);
+    else ++counts_.num_lost;
     return report;
   }
   const bool was_lost = num_lost_in_a_row_ > 0;
   Registration found = tracker_.track(view, frame);
-  if (!found.is_found && was_lost) found = tracker_.find_back(view, places_, frame);
+  if (!found.is_found && (was_lost || bridge_.is_open())) found = tracker_.find_back(view, places_, frame);
+  if (!found.is_found && !was_lost && go_on_by_depth(frame, view, thumbnail, &report)) return report;
   if (!found.is_found) {
+    bridge_.forget();
     if (num_lost_in_a_row_++ == 0) ++counts_.num_losses;
     tracker_.forget_motion();
-    if (num_lost_in_a_row_ > options_.max_lost_views && begin_segment(frame, view, &report)) return report;
+    if (num_lost_in_a_row_ > options_.max_lost_views && begin_segment(frame, view, &report)) {
+      begin_bridge(view.stamp_ns, thumbnail);
+      return report;
+    }
     ++counts_.num_lost;
     return report;
   }
@@ -60,12 +75,57 @@ ViewReport Slam::add_view(std::uint64_t frame, const ViewFeatures& view) {
   } else {
     remember(frame, view, found, false);
   }
+  begin_bridge(view.stamp_ns, thumbnail);
   return report;
 }
 
+// The next view may need this one.
+void Slam::begin_bridge(std::int64_t stamp_ns, const ViewThumbnail& thumbnail) {
+  bridge_.begin_at(stamp_ns, thumbnail);
+  bridge_begin_ = {tracker_.reference(), tracker_.T_reference_camera()};
+}
+
+// A view full of features that fit nothing is a riddle, no bare wall: only a bridge may lead to one.
+bool Slam::go_on_by_depth(std::uint64_t frame, const ViewFeatures& view, const ViewThumbnail& thumbnail, ViewReport* report) {
+  const bool is_bare = num_with_depth(view) < options_.min_segment_features;
+  if (!is_bare && !bridge_.is_open()) return false;
+  const Rigid3 T_map_begin = map_.keyframe(bridge_begin_.reference).view.T_map_camera * bridge_begin_.T_reference_camera;
+  const auto step = bridge_.step(view.stamp_ns, thumbnail, T_map_begin.inverse() * tracker_.predict(view.stamp_ns));
+  if (!step) return false;
+  report->state = ViewState::kTracked;
+  report->is_bridged = true;
+  ++counts_.num_bridged;
+  tracker_.accept(view.stamp_ns, T_map_begin * step->T_begin_camera);
+  if (is_bare) {
+    remember(frame, view, {}, false);
+  } else {
+    end_bridge(frame, view, *step, report);
+    begin_bridge(view.stamp_ns, thumbnail);
+  }
+  return true;
+}
+
+// There are features again, but of nothing that is known: the map goes on from here, held by what the bridge says.
+void Slam::end_bridge(std::uint64_t frame, ViewFeatures view, const DepthBridge::Step& step, ViewReport* report) {
+  const std::uint32_t before = bridge_begin_.reference;
+  const Rigid3 T_before_camera = bridge_begin_.T_reference_camera * step.T_begin_camera;
+  view.T_map_camera = map_.keyframe(before).view.T_map_camera * T_before_camera;
+  report->is_keyframe = true;
+  const std::uint32_t keyframe = insert_keyframe(frame, map_.keyframe(before).segment, view, {}, &map_);
+  loops_.add_link({before, keyframe, T_before_camera,
+                   rotate_covariance(bridge_begin_.T_reference_camera.rotation, step.covariance) + link_covariance(T_before_camera, kStrongLink)});
+  tracker_.set_reference(keyframe);
+  remember(frame, view, {}, true);
+  if (options_.close_loops) {
+    report->loop = loops_.consider(keyframe, places_);
+    count(report->loop);
+  }
+  places_.add(view.features.descriptors);
+  tracker_.refresh();
+}
+
 bool Slam::begin_segment(std::uint64_t frame, ViewFeatures view, ViewReport* report) {
-  const auto num_with_depth = std::count_if(view.depth_m.begin(), view.depth_m.end(), [](float z) { return z > 0; });
-  if (num_with_depth < static_cast<std::ptrdiff_t>(options_.min_segment_features)) return false;
+  if (num_with_depth(view) < options_.min_segment_features) return false;
   SegmentBegin begin;
   begin.first_keyframe = static_cast<std::uint32_t>(map_.keyframes().size());
   begin.has_before = !map_.keyframes().empty();
@@ -182,8 +242,15 @@ void Slam::count(const LoopReport& loop) {
   if (loop.is_refused) ++counts_.num_loops_refused;
 }
 
+// Pixels are not needed any more afterwards.
+void Slam::refine_all_sightings() {
+  if (options_.refine_sightings) (void)refine_sightings(options_.patches, &map_);
+  for (std::uint32_t k = 0; k < map_.keyframes().size(); ++k) map_.keyframe(k).view.patches = {};
+}
+
 SlamResult Slam::finish(const BundleCallback& on_iteration) {
   join_leftover_segments();
+  refine_all_sightings();
   fits_.clear();
   for (const SlamKeyframe& keyframe : map_.keyframes()) fits_[keyframe.segment];
   for (auto& [segment, fit] : fits_) fit = adjust_globally(bundle_options(), segment, {}, options_.max_pixel_sigmas, &map_, on_iteration);

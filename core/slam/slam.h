@@ -14,13 +14,16 @@
 #include <span>
 #include <vector>
 
+#include "core/slam/depth_bridge.h"
 #include "core/slam/far_landmarks.h"
 #include "core/slam/loop_closing.h"
 #include "core/slam/map_adjustment.h"
+#include "core/slam/patch_alignment.h"
 #include "core/slam/place_index.h"
 #include "core/slam/slam_map.h"
 #include "core/slam/tracker.h"
 #include "core/slam/view_registration.h"
+#include "core/slam/view_thumbnail.h"
 
 namespace camloc {
 
@@ -36,9 +39,12 @@ struct SlamOptions {
   LoopOptions loops;
   FarLandmarkOptions far_landmarks;
   std::size_t num_fused_neighbours = 5;
+  DepthBridgeOptions bridge;
   int max_lost_views = 10;             ///< after so many in a row a new segment begins
-  std::uint32_t min_segment_features = 200;  ///< features with depth that a view needs to begin one
+  std::uint32_t min_segment_features = 200;  ///< features with depth that a view needs to begin one, or to end a bridge
   std::vector<std::uint64_t> required_keyframes;   ///< frames that become keyframes whatever they show, ascending
+  bool refine_sightings = true;        ///< to a fraction of a pixel before the final adjustment, where views have patches
+  PatchAlignmentOptions patches;
   double max_pixel_sigmas = 2.45;      ///< sightings farther off after the final adjustment are removed
 };
 
@@ -49,6 +55,7 @@ struct ViewReport {
   ViewState state = ViewState::kLost;
   int num_inliers = 0;
   bool is_keyframe = false;
+  bool is_bridged = false;             ///< tracked, but by dense alignment: it shows too few features
   bool is_found_back = false;          ///< the first one after a loss
   bool has_begun_segment = false;
   LoopReport loop;
@@ -56,6 +63,7 @@ struct ViewReport {
 
 struct SlamCounts {
   std::uint32_t num_views = 0, num_lost = 0, num_losses = 0;   ///< views without pose; how often it happened
+  std::uint32_t num_bridged = 0;                                ///< views whose pose is from dense alignment
   std::uint32_t num_keyframes = 0, num_landmarks = 0;
   std::uint32_t num_loops = 0, num_loops_refused = 0, num_segments = 0, num_joined = 0;
 };
@@ -85,8 +93,9 @@ class Slam {
  public:
   Slam(const RgbdCamera& camera, const SlamOptions& options);
 
-  /// The next view; `frame` is its index in the recording, ascending.
-  ViewReport add_view(std::uint64_t frame, const ViewFeatures& view);
+  /// The next view; `frame` is its index in the recording, ascending. Patches are kept of those that become keyframes, until
+  /// finish(). With thumbnails, stretches without features are bridged.
+  ViewReport add_view(std::uint64_t frame, const ViewFeatures& view, const ViewThumbnail& thumbnail = {});
   [[nodiscard]] SlamCounts counts() const;
 
   [[nodiscard]] const SlamMap& map() const { return map_; }
@@ -113,9 +122,13 @@ class Slam {
     std::vector<Seen> seen;
   };
 
+  void begin_bridge(std::int64_t stamp_ns, const ViewThumbnail& thumbnail);
+  bool go_on_by_depth(std::uint64_t frame, const ViewFeatures& view, const ViewThumbnail& thumbnail, ViewReport* report);
+  void end_bridge(std::uint64_t frame, ViewFeatures view, const DepthBridge::Step& step, ViewReport* report);
   bool begin_segment(std::uint64_t frame, ViewFeatures view, ViewReport* report);
   void add_keyframe(std::uint64_t frame, ViewFeatures view, const Registration& tracked, ViewReport* report);
   void join_leftover_segments();
+  void refine_all_sightings();
   void count(const LoopReport& loop);
   void remember(std::uint64_t frame, const ViewFeatures& view, const Registration& tracked, bool is_keyframe);
   [[nodiscard]] BundleOptions bundle_options() const;
@@ -129,6 +142,11 @@ class Slam {
   PlaceIndex places_;
   Tracker tracker_;
   LoopCloser loops_;
+  DepthBridge bridge_;
+  struct {
+    std::uint32_t reference = 0;
+    Rigid3 T_reference_camera;
+  } bridge_begin_;                         ///< the last view that was tracked by its features
   std::vector<TrackedView> tracked_;
   std::map<std::uint32_t, MapFit> fits_;   ///< of the segments, after finish()
   SlamCounts counts_;

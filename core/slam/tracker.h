@@ -54,6 +54,8 @@ class Tracker {
   /// The velocity is not known any more.
   void forget_motion() { velocity_.reset(); }
 
+  /// Where constant velocity leads.
+  [[nodiscard]] Rigid3 predict(std::int64_t stamp_ns) const;
   [[nodiscard]] std::uint32_t reference() const { return reference_; }
   [[nodiscard]] Rigid3 T_reference_camera() const { return T_reference_camera_; }
 
@@ -63,7 +65,6 @@ class Tracker {
     double dt_s = 0;
   };
   void update_local_set();
-  [[nodiscard]] Rigid3 predict(std::int64_t stamp_ns) const;
   [[nodiscard]] bool is_plausible(const Registration& found, std::int64_t stamp_ns) const;
   [[nodiscard]] std::uint32_t best_reference(const Registration& tracked) const;
 

@@ -28,6 +28,19 @@ LoggedView random_view(std::uint64_t frame, std::size_t num_features, std::size_
     logged.view.normalized.emplace_back(number(), number());
     logged.view.depth_m.push_back(i % 3 == 0 ? 0 : number());
   }
+  if (frame == 0) logged.view.patches.resize(num_features);
+  for (FeaturePatch& patch : logged.view.patches) {
+    for (std::uint8_t& grey : patch.pixels) grey = static_cast<std::uint8_t>(rng());
+  }
+  if (frame != 3) {
+    logged.thumbnail.width = 8;
+    logged.thumbnail.height = 6;
+    logged.thumbnail.cell_px = 8;
+    for (std::size_t i = 0; i < 48; ++i) {
+      logged.thumbnail.grey.push_back(static_cast<std::uint16_t>(rng()));
+      logged.thumbnail.depth.push_back(static_cast<std::uint16_t>(rng()));
+    }
+  }
   for (std::size_t i = 0; i < num_surface; ++i) logged.surface_m.emplace_back(number(), number(), number());
   return logged;
 }
@@ -44,6 +57,11 @@ void expect_equal(const LoggedView& a, const LoggedView& b) {
   EXPECT_EQ(a.view.normalized, b.view.normalized);
   EXPECT_EQ(a.view.depth_m, b.view.depth_m);
   EXPECT_EQ(a.surface_m, b.surface_m);
+  EXPECT_EQ(a.thumbnail.grey, b.thumbnail.grey);
+  EXPECT_EQ(a.thumbnail.depth, b.thumbnail.depth);
+  EXPECT_EQ(std::tie(a.thumbnail.width, a.thumbnail.height, a.thumbnail.cell_px), std::tie(b.thumbnail.width, b.thumbnail.height, b.thumbnail.cell_px));
+  ASSERT_EQ(a.view.patches.size(), b.view.patches.size());
+  for (std::size_t i = 0; i < a.view.patches.size(); ++i) EXPECT_EQ(a.view.patches[i].pixels, b.view.patches[i].pixels);
   for (std::size_t i = 0; i < a.view.size(); ++i) {
     const Keypoint &p = a.view.features.keypoints[i], &q = b.view.features.keypoints[i];
     EXPECT_EQ(std::tie(p.u, p.v, p.angle_rad, p.response, p.level), std::tie(q.u, q.v, q.angle_rad, q.response, q.level));

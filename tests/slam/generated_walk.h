@@ -216,7 +216,7 @@ class Viewer {
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[rng_() % i]);
     order.resize(std::min(order.size(), options_.max_features));
-    ViewFeatures kept = ViewFeatures{view->T_map_camera, view->stamp_ns, {}, {}, {}};
+    ViewFeatures kept = ViewFeatures{view->T_map_camera, view->stamp_ns, {}, {}, {}, {}};
     std::vector<std::uint32_t> shown;
     for (const std::size_t i : order) {
       kept.features.keypoints.push_back(view->features.keypoints[i]);

@@ -46,6 +46,7 @@ def main():
     with work_folder() as work:
         kitchen = Walk("kitchen", "7scenes.toml", work)
         assert kitchen.summary["slam"]["lost"] == 0, kitchen.summary
+        assert kitchen.summary["slam"]["reprojection_error_px"]["median"] <= 0.6, kitchen.summary
         assert kitchen.trajectory_error_m() <= 0.05
         surface = kitchen.surface()
         assert mean_to_point_m(surface) <= 0.01, surface

@@ -33,6 +33,7 @@ void append_slam(const BuildSummary& s, std::string* text) {
   const SlamSummary& slam = *s.slam;
   const SlamCounts& c = slam.counts;
   append_text(text, "%-22s%u of %u, lost %u times\n", "frames tracked", c.num_views - c.num_lost, c.num_views, c.num_losses);
+  if (c.num_bridged > 0) append_text(text, "%-22s%u, too bare for features: followed by all their pixels\n", "frames bridged", c.num_bridged);
   append_text(text, "%-22s%u, of %u views each on average\n", "SLAM keyframes", c.num_keyframes, c.num_views / std::max(c.num_keyframes, 1U));
   append_text(text, "%-22s%u closed, %u refused\n", "loops", c.num_loops, c.num_loops_refused);
   append_text(text, "%-22smedian %.2f px, 90 %% below %.2f px (%llu sightings)\n", "reprojection error", slam.fit.median_px, slam.fit.p90_px,
@@ -71,6 +72,7 @@ nlohmann::ordered_json slam_json(const SlamSummary& slam) {
   json["views"] = c.num_views;
   json["lost"] = c.num_lost;
   json["losses"] = c.num_losses;
+  json["bridged"] = c.num_bridged;
   json["keyframes"] = c.num_keyframes;
   json["landmarks"] = c.num_landmarks;
   json["loops"] = {{"closed", c.num_loops}, {"refused", c.num_loops_refused}};

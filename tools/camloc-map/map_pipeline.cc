@@ -262,11 +262,13 @@ Status build_from_walk(const BuildRequest& request, BuildSummary* summary) {
   Walk walk = std::move(prepared).value();
   summary->num_recorded = walk.frames.num_recorded;
   summary->num_selected = walk.frames.num_selected;
-  Slam slam(request.camera, walk.pass.slam);
-  if (const Status found = find_poses(request, &slam, &walk, summary); !found.is_ok()) return found;
-  if (const Status placed = place_walk(request, &slam, &walk, summary); !placed.is_ok()) return placed;
+  {
+    Slam slam(request.camera, walk.pass.slam);   // gone before the map takes its place in memory
+    if (const Status found = find_poses(request, &slam, &walk, summary); !found.is_ok()) return found;
+    if (const Status placed = place_walk(request, &slam, &walk, summary); !placed.is_ok()) return placed;
+  }
   if (const Status written = write_segments(request, walk, summary); !written.is_ok()) return written;
-  if (const Status written = write_trajectory(request, walk.result, slam.counts().num_views); !written.is_ok()) return written;
+  if (const Status written = write_trajectory(request, walk.result, summary->slam->counts.num_views); !written.is_ok()) return written;
   if (!summary->is_partial) std::filesystem::remove(walk.pass.log_path);
   return Status::ok();
 }

@@ -15,7 +15,7 @@ namespace camloc::map_tool {
 namespace {
 
 constexpr std::array<char, 8> kMagic = {'C', 'M', 'V', 'I', 'E', 'W', 'S', '\n'};
-constexpr std::uint32_t kVersion = 1, kMaxFeatures = 1U << 20, kMaxSurface = 1U << 20;
+constexpr std::uint32_t kVersion = 2, kMaxFeatures = 1U << 20, kMaxSurface = 1U << 20, kMaxCells = 1U << 20;
 
 struct LogHeader {
   std::array<char, 8> magic = kMagic;
@@ -29,9 +29,13 @@ struct RecordHeader {
   std::uint64_t frame = 0;
   std::int64_t stamp_ns = 0;
   std::uint32_t num_features = 0, num_surface = 0;
-  std::uint64_t hash = 0;   ///< of the three fields above and the arrays
+  std::uint32_t num_patches = 0;   ///< as many as features, or none
+  std::uint32_t num_cells = 0;     ///< of the thumbnail
+  std::uint16_t thumbnail_width = 0, cell_px = 0;
+  std::uint32_t reserved = 0;
+  std::uint64_t hash = 0;   ///< of the fields above and the arrays
 };
-static_assert(sizeof(RecordHeader) == 32);
+static_assert(sizeof(RecordHeader) == 48);
 
 /// A keypoint without the padding of the struct.
 struct PackedKeypoint {
@@ -54,7 +58,8 @@ const char* get(const char* from, std::size_t count, std::vector<T>* values) {
 
 std::size_t array_bytes(const RecordHeader& header) {
   const std::size_t per_feature = sizeof(PackedKeypoint) + sizeof(Descriptor) + sizeof(Eigen::Vector2f) + sizeof(float);
-  return header.num_features * per_feature + header.num_surface * sizeof(Eigen::Vector3f);
+  return header.num_features * per_feature + header.num_surface * sizeof(Eigen::Vector3f) +
+         header.num_patches * sizeof(FeaturePatch) + header.num_cells * 2 * sizeof(std::uint16_t);
 }
 
 std::uint64_t hash_of(RecordHeader header, const std::vector<char>& bytes) {
@@ -104,8 +109,18 @@ Status ViewLogWriter::add(const LoggedView& logged) {
   put(view.normalized, &bytes_);
   put(view.depth_m, &bytes_);
   put(logged.surface_m, &bytes_);
-  RecordHeader header{logged.frame, view.stamp_ns, static_cast<std::uint32_t>(view.size()),
-                      static_cast<std::uint32_t>(logged.surface_m.size()), 0};
+  put(view.patches, &bytes_);
+  put(logged.thumbnail.grey, &bytes_);
+  put(logged.thumbnail.depth, &bytes_);
+  RecordHeader header;
+  header.frame = logged.frame;
+  header.stamp_ns = view.stamp_ns;
+  header.num_features = static_cast<std::uint32_t>(view.size());
+  header.num_surface = static_cast<std::uint32_t>(logged.surface_m.size());
+  header.num_patches = static_cast<std::uint32_t>(view.patches.size());
+  header.num_cells = static_cast<std::uint32_t>(logged.thumbnail.grey.size());
+  header.thumbnail_width = static_cast<std::uint16_t>(logged.thumbnail.width);
+  header.cell_px = static_cast<std::uint16_t>(logged.thumbnail.cell_px);
   header.hash = hash_of(header, bytes_);
   errno = 0;
   file_.write(reinterpret_cast<const char*>(&header), sizeof header);
@@ -142,6 +157,8 @@ Status ViewLogReader::next(LoggedView* logged) {
   if (position_ + sizeof header > file_bytes_) return end;
   file_.read(reinterpret_cast<char*>(&header), sizeof header);
   if (!file_ || header.num_features > kMaxFeatures || header.num_surface > kMaxSurface) return end;
+  if (header.num_patches != 0 && header.num_patches != header.num_features) return end;
+  if (header.num_cells > kMaxCells || (header.num_cells > 0 && (header.thumbnail_width == 0 || header.num_cells % header.thumbnail_width != 0))) return end;
   const std::size_t size = array_bytes(header);
   if (position_ + sizeof header + size > file_bytes_) return end;
   bytes_.resize(size);
@@ -157,7 +174,13 @@ Status ViewLogReader::next(LoggedView* logged) {
   from = get(from, header.num_features, &view.features.descriptors);
   from = get(from, header.num_features, &view.normalized);
   from = get(from, header.num_features, &view.depth_m);
-  get(from, header.num_surface, &logged->surface_m);
+  from = get(from, header.num_surface, &logged->surface_m);
+  from = get(from, header.num_patches, &view.patches);
+  from = get(from, header.num_cells, &logged->thumbnail.grey);
+  get(from, header.num_cells, &logged->thumbnail.depth);
+  logged->thumbnail.width = header.thumbnail_width;
+  logged->thumbnail.height = header.num_cells > 0 ? static_cast<int>(header.num_cells / header.thumbnail_width) : 0;
+  logged->thumbnail.cell_px = header.cell_px;
   view.features.keypoints.clear();
   for (const PackedKeypoint& k : keypoints)
     view.features.keypoints.push_back({k.u, k.v, k.angle_rad, k.response, static_cast<std::uint8_t>(k.level)});

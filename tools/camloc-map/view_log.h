@@ -16,12 +16,14 @@
 
 #include "core/base/result.h"
 #include "core/map/view_features.h"
+#include "core/slam/view_thumbnail.h"
 
 namespace camloc::map_tool {
 
 struct LoggedView {
   std::uint64_t frame = 0;                     ///< index in the recording
-  ViewFeatures view;                           ///< the pose is not kept
+  ViewFeatures view;                           ///< the pose is not kept; the patches are where there are some
+  ViewThumbnail thumbnail;                     ///< may be empty
   std::vector<Eigen::Vector3f> surface_m;      ///< coarse sample of what the depth camera saw, in the camera frame
 };
 

@@ -34,7 +34,7 @@ std::string note_of(const SlamCounts& counts) {
 class Pass {
  public:
   Pass(const WalkRequest& request, Slam* slam, WalkCheck* check)
-      : request_(request), slam_(slam), check_(check), extractor_(request.camera, request.orb), progress_(request.num_frames) {}
+      : request_(request), slam_(slam), check_(check), extractor_(request.camera, request.orb), thumbnails_(request.camera), progress_(request.num_frames) {}
 
   /// Processes what an earlier pass has seen; says where its log ends.
   Status replay(std::uint64_t* log_bytes) {
@@ -88,24 +88,27 @@ class Pass {
       return Status::ok();
     }
     if (const Status checked = extractor_.check(frame); !checked.is_ok()) return checked;
-    const LoggedView logged{frame.sequence, extractor_.extract(frame), sample_surface(request_.camera, frame.depth)};
+    LoggedView logged{frame.sequence, extractor_.extract_with_patches(frame), thumbnails_.make(frame), sample_surface(request_.camera, frame.depth)};
     check_->see_frame(frame, logged.view.size(), num_with_depth(logged.view));
     if (const Status usable = check_->early_verdict(); !usable.is_ok()) return usable;
-    track(logged);
+    if (!track(logged)) logged.view.patches.clear();   // only those of keyframes are asked for again
     return log->add(logged);
   }
 
-  void track(const LoggedView& logged) {
-    const ViewReport report = slam_->add_view(logged.frame, logged.view);
+  /// Whether the view has become a keyframe.
+  bool track(const LoggedView& logged) {
+    const ViewReport report = slam_->add_view(logged.frame, logged.view, logged.thumbnail);
     check_->see_report(report);
     if (report.is_keyframe) end_.surfaces.push_back({logged.frame, logged.surface_m});
     progress_.show(++num_done_, note_of(slam_->counts()));
+    return report.is_keyframe;
   }
 
   const WalkRequest& request_;
   Slam* slam_;
   WalkCheck* check_;
   ViewExtractor extractor_;
+  ThumbnailMaker thumbnails_;
   ProgressLine progress_;
   WalkEnd end_;
   std::uint64_t num_done_ = 0, last_frame_ = 0;

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The motion between two views from all their pixels at once: grey levels and depth of one are compared with those of the other
+// where a motion would put them (Kerl, Sturm, Cremers, "Dense visual SLAM for RGB-D cameras", 2013). On thumbnails this takes a few
+// milliseconds; it needs a good guess, and serves where there is no feature to hold on to.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "core/geometry/rigid3.h"
+#include "core/slam/view_thumbnail.h"
+
+namespace camloc {
+
+struct DenseAlignmentOptions {
+  int max_iterations = 25;
+  double min_grey_sigma = 0.5;          ///< grey levels; the residuals may say more
+  double min_overlap = 0.35;            ///< share of cells with depth that fall on cells with depth
+  double min_inlier_share = 0.75;       ///< of those, that agree in depth
+  double max_prior_sigmas = 5;          ///< how far from the prediction the result may be
+};
+
+struct DenseAlignment {
+  bool is_aligned = false;
+  Rigid3 T_a_b;
+  Matrix6d covariance = Matrix6d::Identity();   ///< of pose_error() of T_a_b (metres then radians, axes of a)
+  double overlap = 0, inlier_share = 0;
+};
+
+/// Not thread-safe. The same input gives the same bits.
+class DenseAligner {
+ public:
+  DenseAligner(const RgbdCamera& camera, const DenseAlignmentOptions& options);
+
+  /// Starts at the prediction, which is a measurement like any other: directions that the views say nothing about, as along a
+  /// bare wall, stay as predicted, with the covariance of the prediction (that of pose_error(), axes of a).
+  [[nodiscard]] DenseAlignment align(const ViewThumbnail& a, const ViewThumbnail& b, const Rigid3& T_a_b_predicted, const Matrix6d& covariance);
+
+ private:
+  struct Equations {
+    Matrix6d H = Matrix6d::Zero();
+    Vector6d g = Vector6d::Zero();
+    double overlap = 0, inlier_share = 0;
+  };
+  void prepare(const ViewThumbnail& b);
+  [[nodiscard]] Equations linearize(const ViewThumbnail& a, const ViewThumbnail& b, const Rigid3& T_a_b);
+
+  struct Point {
+    Eigen::Vector3d p_b;
+    float grey;
+  };
+  struct Pair {
+    Vector6d J_grey, J_depth;
+    double grey, depth, depth_sigma, slope_squared;
+  };
+  RgbdCamera camera_;
+  DenseAlignmentOptions options_;
+  std::vector<float> grey_a_, grey_b_;   ///< without slow changes
+  std::vector<Eigen::Vector2f> slopes_a_;  ///< of the depth, metres a cell
+  std::vector<Point> points_;
+  std::vector<Pair> pairs_;
+};
+
+}  // namespace camloc

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/slam/depth_bridge.h"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "core/slam/dead_reckoning.h"
+
+namespace camloc {
+namespace {
+
+double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
+
+double worst_sigma(const Eigen::Matrix3d& covariance) {
+  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues().maxCoeff());
+}
+
+}  // namespace
+
+void DepthBridge::begin_at(std::int64_t stamp_ns, const ViewThumbnail& thumbnail) {
+  begin_ns_ = last_ns_ = stamp_ns;
+  num_steps_ = 0;
+  anchor_ = thumbnail;
+  anchor_step_ = last_ = {Rigid3(), Matrix6d::Zero()};
+}
+
+void DepthBridge::forget() {
+  num_steps_ = 0;
+  anchor_ = {};
+}
+
+std::optional<DepthBridge::Step> DepthBridge::step(std::int64_t stamp_ns, const ViewThumbnail& thumbnail, const Rigid3& T_begin_camera_expected) {
+  const double dt_s = seconds(stamp_ns - last_ns_);
+  if (anchor_.empty() || thumbnail.empty() || !(dt_s > 0 && dt_s <= options_.max_gap_s) || seconds(stamp_ns - begin_ns_) > options_.max_length_s) {
+    forget();
+    return std::nullopt;
+  }
+  // Everything in the axes of the begin. The prediction is as good as the last view and the motion since; of the last view only
+  // counts what came after the anchor.
+  const Eigen::Quaterniond R_anchor_begin = anchor_step_.T_begin_camera.rotation.conjugate();
+  const Matrix6d motion = diagonal_covariance(options_.jitter_m + 0.5 * options_.acceleration_m_s2 * dt_s * dt_s,
+                                              options_.jitter_rad + 0.5 * options_.acceleration_rad_s2 * dt_s * dt_s);
+  const Matrix6d since_anchor = last_.covariance - anchor_step_.covariance + motion;
+  const DenseAlignment aligned = aligner_.align(anchor_, thumbnail, anchor_step_.T_begin_camera.inverse() * T_begin_camera_expected,
+                                                rotate_covariance(R_anchor_begin, since_anchor));
+  if (!aligned.is_aligned) {
+    forget();
+    return std::nullopt;
+  }
+  Step now;
+  now.T_begin_camera = anchor_step_.T_begin_camera * aligned.T_a_b;
+  now.covariance = anchor_step_.covariance + rotate_covariance(anchor_step_.T_begin_camera.rotation, aligned.covariance);
+  if (worst_sigma(now.covariance.topLeftCorner<3, 3>()) > options_.max_sigma_m || worst_sigma(now.covariance.bottomRightCorner<3, 3>()) > options_.max_sigma_rad) {
+    forget();
+    return std::nullopt;
+  }
+  last_ns_ = stamp_ns;
+  last_ = now;
+  ++num_steps_;
+  if (aligned.overlap < options_.min_anchor_overlap) {
+    anchor_ = thumbnail;
+    anchor_step_ = now;
+  }
+  return now;
+}
+
+}  // namespace camloc

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Across a stretch without features: from the last view that was tracked, the camera is followed by dense alignment of thumbnails
+// until there is something to track again. What the views do not say (where along a bare wall) is left to constant velocity, and
+// the covariance knows; a bridge ends where that grows too large.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/slam/dense_alignment.h"
+#include "core/slam/view_thumbnail.h"
+
+namespace camloc {
+
+struct DepthBridgeOptions {
+  DenseAlignmentOptions alignment;
+  double max_gap_s = 0.25;                  ///< between two views: farther apart, they are no prediction of each other
+  double max_length_s = 4.0;
+  double max_sigma_m = 0.25, max_sigma_rad = 0.10;       ///< since the last tracked view, in the worst direction
+  double min_anchor_overlap = 0.6;          ///< below it, the next view is aligned with this one instead of an earlier one
+  // How far constant velocity may be off after a time dt: half an acceleration times dt^2, and a little at once.
+  double acceleration_m_s2 = 3.0, acceleration_rad_s2 = 10.0;
+  double jitter_m = 0.003, jitter_rad = 0.003;
+};
+
+/// Not thread-safe.
+class DepthBridge {
+ public:
+  DepthBridge(const RgbdCamera& camera, const DepthBridgeOptions& options) : options_(options), aligner_(camera, options.alignment) {}
+
+  /// A view was tracked by its features: the next bridge begins here. Without a thumbnail there is none.
+  void begin_at(std::int64_t stamp_ns, const ViewThumbnail& thumbnail);
+  /// Tracking goes on somewhere else.
+  void forget();
+
+  struct Step {
+    Rigid3 T_begin_camera;
+    Matrix6d covariance = Matrix6d::Identity();   ///< of pose_error() of T_begin_camera, axes of the begin
+  };
+  /// The view that followed, given where it is expected; nothing where it does not fit or too little is known by now, and then
+  /// the bridge has ended.
+  [[nodiscard]] std::optional<Step> step(std::int64_t stamp_ns, const ViewThumbnail& thumbnail, const Rigid3& T_begin_camera_expected);
+
+  /// Views have been bridged since begin_at().
+  [[nodiscard]] bool is_open() const { return num_steps_ > 0; }
+
+ private:
+  DepthBridgeOptions options_;
+  DenseAligner aligner_;
+  std::int64_t begin_ns_ = 0, last_ns_ = 0;
+  int num_steps_ = 0;
+  ViewThumbnail anchor_;
+  Step anchor_step_, last_;                        ///< where the anchor and the last view are
+};
+
+}  // namespace camloc

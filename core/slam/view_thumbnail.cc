@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/slam/view_thumbnail.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace camloc {
+namespace {
+
+constexpr float kSameSurfaceShare = 1.03F, kSameSurfaceM = 0.01F;   // what still belongs to the nearest surface in a cell
+constexpr std::uint32_t kMinSamples = 2;
+
+}  // namespace
+
+ThumbnailMaker::ThumbnailMaker(const RgbdCamera& camera) : camera_(camera), depth_rays_(camera.depth) {}
+
+// Every second depth pixel along both axes, every fourth where each has to be projected.
+void ThumbnailMaker::sample_depth(ImageView<std::uint16_t> depth, const ViewThumbnail& thumbnail) {
+  samples_.clear();
+  const int step = camera_.is_depth_registered ? 2 : 4;
+  const Eigen::Matrix3d R_color_depth = camera_.T_color_depth.rotation.toRotationMatrix();
+  for (int y = step / 2; y < depth.height; y += step) {
+    for (int x = step / 2; x < depth.width; x += step) {
+      float z = camera_.depth_m(depth.at(x, y));
+      if (z <= 0) continue;
+      Eigen::Vector2d pixel(x, y);
+      if (!camera_.is_depth_registered) {
+        const Eigen::Vector2f ray = depth_rays_.undistort(static_cast<float>(x), static_cast<float>(y));
+        const Eigen::Vector3d p_color = R_color_depth * (z * Eigen::Vector3d(ray.x(), ray.y(), 1)) + camera_.T_color_depth.translation;
+        if (p_color.z() < 0.05) continue;
+        pixel = camera_.color.project(p_color);
+        z = static_cast<float>(p_color.z());
+      }
+      const double column = std::floor((pixel.x() + 0.5) / thumbnail.cell_px), row = std::floor((pixel.y() + 0.5) / thumbnail.cell_px);
+      if (!(column >= 0 && row >= 0 && column < thumbnail.width && row < thumbnail.height)) continue;
+      samples_.push_back({static_cast<std::uint32_t>(thumbnail.index(static_cast<int>(column), static_cast<int>(row))), z});
+    }
+  }
+}
+
+ViewThumbnail ThumbnailMaker::make(const Frame& frame) {
+  ViewThumbnail thumbnail;
+  const int cell = thumbnail.cell_px = std::max((frame.gray.width + ViewThumbnail::kColumns - 1) / ViewThumbnail::kColumns, 1);
+  thumbnail.width = frame.gray.width / cell;
+  thumbnail.height = frame.gray.height / cell;
+  const std::size_t count = thumbnail.index(0, thumbnail.height);
+  thumbnail.grey.resize(count);
+  const float to_units = 1.0F / (ViewThumbnail::kGreyUnit * static_cast<float>(cell * cell));
+  for (int row = 0; row < thumbnail.height; ++row) {
+    for (int column = 0; column < thumbnail.width; ++column) {
+      std::uint32_t sum = 0;
+      for (int y = row * cell; y < (row + 1) * cell; ++y) {
+        const std::uint8_t* pixels = frame.gray.row(y) + column * cell;
+        for (int x = 0; x < cell; ++x) sum += pixels[x];
+      }
+      thumbnail.grey[thumbnail.index(column, row)] = static_cast<std::uint16_t>(std::lround(to_units * static_cast<float>(sum)));
+    }
+  }
+  sample_depth(frame.depth, thumbnail);
+  nearest_m_.assign(count, std::numeric_limits<float>::infinity());
+  sum_m_.assign(count, 0);
+  counts_.assign(count, 0);
+  for (const Sample& s : samples_) nearest_m_[s.cell] = std::min(nearest_m_[s.cell], s.z_m);
+  for (const Sample& s : samples_) {
+    if (s.z_m > kSameSurfaceShare * nearest_m_[s.cell] + kSameSurfaceM) continue;
+    sum_m_[s.cell] += s.z_m;
+    ++counts_[s.cell];
+  }
+  thumbnail.depth.assign(count, 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (counts_[i] < kMinSamples) continue;
+    const float units = sum_m_[i] / static_cast<float>(counts_[i]) / ViewThumbnail::kDepthUnitM;
+    if (units < 65535) thumbnail.depth[i] = static_cast<std::uint16_t>(std::lround(units));
+  }
+  return thumbnail;
+}
+
+}  // namespace camloc

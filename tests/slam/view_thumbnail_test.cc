@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "core/slam/view_thumbnail.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace camloc {
+namespace {
+
+RgbdCamera registered_camera() {
+  RgbdCamera camera;
+  camera.color.width = 640;
+  camera.color.height = 480;
+  camera.color.fx = camera.color.fy = 525;
+  camera.color.cx = 319.5;
+  camera.color.cy = 239.5;
+  camera.depth = camera.color;
+  return camera;
+}
+
+struct Images {
+  Image<std::uint8_t> gray;
+  Image<std::uint16_t> depth;
+
+  Images() {
+    gray.resize(640, 480);
+    depth.resize(640, 480);
+    for (int y = 0; y < 480; ++y) {
+      for (int x = 0; x < 640; ++x) {
+        gray.at(x, y) = static_cast<std::uint8_t>(x / 8 + (x + y) % 2);
+        depth.at(x, y) = 2000;
+      }
+    }
+  }
+  [[nodiscard]] Frame frame() const { return {0, 0, gray.view(), depth.view()}; }
+};
+
+double depth_m(const ViewThumbnail& view, int x, int y) { return view.depth[view.index(x, y)] * static_cast<double>(ViewThumbnail::kDepthUnitM); }
+
+TEST(ViewThumbnail, AveragesGreyAndTakesTheNearerSurface) {
+  Images images;
+  for (int y = 0; y < 480; ++y) {
+    for (int x = 324; x < 328; ++x) images.depth.at(x, y) = 1000;                  // half of a cell
+    for (int x = 400; x < 416; ++x) images.depth.at(x, y) = 0;
+  }
+  const ViewThumbnail view = ThumbnailMaker(registered_camera()).make(images.frame());
+  EXPECT_EQ(view.width, 80);
+  EXPECT_EQ(view.height, 60);
+  EXPECT_EQ(view.cell_px, 8);
+  EXPECT_NEAR(view.grey[view.index(30, 7)] * static_cast<double>(ViewThumbnail::kGreyUnit), 30.5, 0.02);
+  EXPECT_NEAR(depth_m(view, 10, 20), 2.0, 1e-3);
+  EXPECT_NEAR(depth_m(view, 40, 20), 1.0, 1e-3);
+  EXPECT_EQ(view.depth[view.index(50, 20)], 0);
+}
+
+// The depth camera sits 10 cm to the left and has another focal length: what is near moves farther.
+TEST(ViewThumbnail, ProjectsDepthThatIsNotRegistered) {
+  RgbdCamera camera = registered_camera();
+  camera.is_depth_registered = false;
+  camera.depth.fx = camera.depth.fy = 585;
+  camera.T_color_depth.translation.x() = -0.1;
+  Images images;
+  for (int y = 0; y < 480; ++y) {
+    for (int x = 300; x < 400; ++x) images.depth.at(x, y) = 1000;
+  }
+  const ViewThumbnail view = ThumbnailMaker(camera).make(images.frame());
+  const auto column_of = [&](double depth_x, double z) {
+    return static_cast<int>(std::floor((525 * ((depth_x - 319.5) / 585 - 0.1 / z) + 320) / 8));
+  };
+  EXPECT_NEAR(depth_m(view, column_of(350, 1.0), 30), 1.0, 1e-3);
+  EXPECT_NEAR(depth_m(view, column_of(500, 2.0), 30), 2.0, 1e-3);
+  EXPECT_NEAR(depth_m(view, column_of(304, 1.0), 30), 1.0, 1e-3);   // hides what the depth camera saw behind
+}
+
+}  // namespace
+}  // namespace camloc
