@@ -214,7 +214,7 @@ def check_interrupt(bench):
     log = pathlib.Path(f"{bench.out}.views")
     process = subprocess.Popen(bench.arguments(bench.walk, bench.out), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     end = time.monotonic() + PATIENCE_S
-    while not log.exists() or log.stat().st_size < 1_400_000:
+    while not log.exists() or log.stat().st_size < 4_000_000:
         assert process.poll() is None and time.monotonic() < end, process.communicate()
         time.sleep(0.002)
     process.send_signal(signal.SIGINT)

@@ -7,6 +7,11 @@
 # What scenarios call themselves; what camloc needs is asked of its packages.
 base_packages=(systemd systemd-sysv udev dbus kmod v4l-utils iproute2)
 
+# What the packages are expected to depend on, so that the base system can be fetched before they are built. What is missing here is
+# fetched all the same, only later.
+expected_packages=(libjpeg62-turbo liblcm1 libopencv-core406 libopencv-imgproc406 libpng16-16 libstdc++6 libusb-1.0-0 libxxhash0 libyaml-cpp0.7
+  libc6 libgcc-s1)
+
 # The machine's own Debian repositories, as lines of a sources.list.
 debian_sources() {
   # shellcheck disable=SC2016 # apt fills these in
@@ -19,14 +24,14 @@ dependencies_of() {
   for deb in "$@"; do dpkg-deb -f "$deb" Depends; done | tr ',' '\n' | sed 's/|.*//; s/(.*//; s/:any//; s/[[:space:]]//g' | grep -v '^camloc' | sort -u
 }
 
-# get_base_root CACHE DEB...: makes CACHE/root-KEY.tar, a system with everything but the packages themselves, and sets $base_root.
+# get_base_root CACHE [DEB...]: makes CACHE/root-KEY.tar, a system with everything but the packages themselves, and sets $base_root.
 # False with a reason in $reason.
 get_base_root() {
   local cache=$1 include key proxy options=()
   # Depended on, but never opened here: what draws, what translates, what explains.
   local slim='rm -rf usr/share/locale usr/share/doc/lib* usr/share/man var/cache/apt/*.bin usr/lib/*/libLLVM* usr/lib/*/libz3* usr/lib/*/dri usr/lib/udev/hwdb.bin'
   shift
-  include=$(printf '%s\n' "${base_packages[@]}" $(dependencies_of "$@") | sort -u | paste -sd, -)
+  include=$(printf '%s\n' "${base_packages[@]}" "${expected_packages[@]}" $(dependencies_of "$@") | sort -u | paste -sd, -)
   key=$(printf '%s' "$include $slim" | sha256sum | cut -c1-16)
   base_root=$cache/root-$key.tar
   [[ -f $base_root ]] && return 0
