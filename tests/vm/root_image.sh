@@ -51,7 +51,7 @@ install_packages() {
   shift
   mkdir -p "$root/root/packages"
   cp "$@" "$root/root/packages/"
-  chroot "$root" sh -c 'dpkg -i /root/packages/*.deb' 2>&1
+  chroot "$root" /usr/bin/env PATH=/usr/sbin:/usr/bin:/sbin:/bin sh -c 'dpkg -i /root/packages/*.deb' 2>&1
 }
 
 # add_scenarios ROOT FOLDER: the guest's side, started by systemd once the system is up.
