@@ -4,7 +4,6 @@
 
 #include <poll.h>
 #include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +14,8 @@
 
 #include "drivers/text.h"
 
+#include "tests/fakes/unix_listener.h"
+
 namespace camloc::fakes {
 namespace {
 
@@ -23,18 +24,6 @@ constexpr std::size_t kMaxLine = 4096;
 
 std::int64_t monotonic_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-Result<UniqueFd> listen_at(const std::string& path) {
-  sockaddr_un name{};
-  name.sun_family = AF_UNIX;
-  if (path.size() >= sizeof name.sun_path) return {ErrorCode::kInvalid, path + ": too long for a socket's name"};
-  std::memcpy(name.sun_path, path.c_str(), path.size() + 1);
-  ::unlink(path.c_str());
-  UniqueFd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  if (!fd.is_open() || ::bind(fd.get(), reinterpret_cast<const sockaddr*>(&name), sizeof name) != 0 || ::listen(fd.get(), 4) != 0)
-    return {ErrorCode::kIo, path + ": no socket: " + std::strerror(errno)};
-  return fd;
 }
 
 }  // namespace
@@ -49,7 +38,7 @@ Result<TimedCommand> parse_timed_command(const std::string& text) {
 Result<std::unique_ptr<ControlServer>> ControlServer::start(const std::string& path, std::vector<TimedCommand> schedule, Handler handler) {
   std::unique_ptr<ControlServer> server(new ControlServer);
   if (!path.empty()) {
-    auto fd = listen_at(path);
+    auto fd = listen_at(path, 4);
     if (!fd) return fd.status();
     server->listener_ = std::move(*fd);
   }

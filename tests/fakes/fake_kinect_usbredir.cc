@@ -16,7 +16,6 @@
 #include <poll.h>
 #include <signal.h>
 #include <sys/socket.h>
-#include <sys/un.h>
 
 #include <chrono>
 #include <cstdio>
@@ -25,6 +24,7 @@
 
 #include "tests/fakes/rig_arguments.h"
 #include "tests/fakes/usbredir_device.h"
+#include "tests/fakes/unix_listener.h"
 
 namespace {
 
@@ -44,18 +44,6 @@ int fail(const Status& status, int code) {
 
 std::int64_t monotonic_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-Result<UniqueFd> listen_at(const std::string& path) {
-  sockaddr_un name{};
-  name.sun_family = AF_UNIX;
-  if (path.size() >= sizeof name.sun_path) return {ErrorCode::kInvalid, path + ": too long for a socket's name"};
-  std::memcpy(name.sun_path, path.c_str(), path.size() + 1);
-  ::unlink(path.c_str());
-  UniqueFd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  if (!fd.is_open() || ::bind(fd.get(), reinterpret_cast<const sockaddr*>(&name), sizeof name) != 0 || ::listen(fd.get(), 1) != 0)
-    return {ErrorCode::kIo, path + ": no socket: " + std::strerror(errno)};
-  return fd;
 }
 
 /// The rig, and the peer that it is shown to, under one lock.
@@ -125,7 +113,7 @@ int main(int argc, char** argv) {
   for (const int signal : {SIGTERM, SIGINT}) ::sigaction(signal, &action, nullptr);
   auto rig = KinectRig::create(arguments.rig);
   if (!rig) return fail(rig.status(), kFailed);
-  const auto listener = listen_at(socket_path);
+  const auto listener = listen_at(socket_path, 1, SOCK_NONBLOCK);
   if (!listener) return fail(listener.status(), kFailed);
 
   Server server;
