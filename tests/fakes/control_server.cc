@@ -13,7 +13,6 @@
 #include <cstring>
 
 #include "drivers/text.h"
-
 #include "tests/fakes/unix_listener.h"
 
 namespace camloc::fakes {
