@@ -113,24 +113,10 @@ void write_back(const Extract& extract, SlamMap* map) {
   for (std::size_t i = 0; i < extract.landmarks.size(); ++i) map->landmark(extract.landmarks[i]).position_m = extract.problem.landmarks_m[i];
 }
 
-// Takes sightings that do not fit out of the map; the observations of the extract are left as they are.
-std::uint64_t remove_outliers(const BundleOptions& bundle, const Extract& extract, double max_pixel_sigmas, SlamMap* map) {
-  const std::vector<BundleResidual> residuals = bundle_residuals(bundle, extract.problem);
-  std::uint64_t num_removed = 0;
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
-    if (residuals[i].pixel_sigmas <= max_pixel_sigmas) continue;
-    const BundleObservation& o = extract.problem.observations[i];
-    if (o.landmark >= extract.landmarks.size()) continue;
-    map->remove_sighting(extract.landmarks[o.landmark], extract.keyframes[o.camera]);
-    ++num_removed;
-  }
-  return num_removed;
-}
-
-MapFit measure_fit(const BundleOptions& bundle, const Extract& extract) {
+// What the residuals say, before anything is removed.
+MapFit measure_fit(const BundleOptions& bundle, const Extract& extract, std::span<const BundleResidual> residuals) {
   MapFit fit;
   std::vector<double> pixels, sigmas, metres;
-  const std::vector<BundleResidual> residuals = bundle_residuals(bundle, extract.problem);
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     const BundleObservation& o = extract.problem.observations[i];
     pixels.push_back(static_cast<double>(residuals[i].pixel_sigmas) * o.sigma_px);
@@ -144,6 +130,19 @@ MapFit measure_fit(const BundleOptions& bundle, const Extract& extract) {
   fit.median_depth_sigmas = lower_quantile(std::move(sigmas), 0.5);
   fit.median_depth_m = lower_quantile(std::move(metres), 0.5);
   return fit;
+}
+
+// Takes sightings that do not fit out of the map; the observations of the extract are left as they are.
+std::uint64_t remove_outliers(const Extract& extract, std::span<const BundleResidual> residuals, double max_pixel_sigmas, SlamMap* map) {
+  std::uint64_t num_removed = 0;
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (residuals[i].pixel_sigmas <= max_pixel_sigmas) continue;
+    const BundleObservation& o = extract.problem.observations[i];
+    if (o.landmark >= extract.landmarks.size()) continue;
+    map->remove_sighting(extract.landmarks[o.landmark], extract.keyframes[o.camera]);
+    ++num_removed;
+  }
+  return num_removed;
 }
 
 // Control landmarks come after those of the map, so that their numbers mean nothing to write_back.
@@ -165,16 +164,18 @@ void add_controls(std::span<const ControlLandmark> controls, Extract* extract) {
 
 }  // namespace
 
-BundleReport adjust_locally(const BundleOptions& bundle, const LocalAdjustmentOptions& options, std::uint32_t keyframe, SlamMap* map) {
+MapFit adjust_locally(const BundleOptions& bundle, const LocalAdjustmentOptions& options, std::uint32_t keyframe, SlamMap* map) {
   Extract extract = extract_window(options, keyframe, *map);
   BundleOptions local = bundle;
   local.max_iterations = options.max_iterations;
   local.min_relative_decrease = 1e-3;
-  const BundleReport report = adjust_bundle(local, &extract.problem);
+  adjust_bundle(local, &extract.problem);
   write_back(extract, map);
-  remove_outliers(local, extract, options.max_pixel_sigmas, map);
+  const std::vector<BundleResidual> residuals = bundle_residuals(local, extract.problem);
+  MapFit fit = measure_fit(local, extract, residuals);
+  fit.num_removed = remove_outliers(extract, residuals, options.max_pixel_sigmas, map);
   for (const std::uint32_t index : extract.landmarks) map->summarize(index);
-  return report;
+  return fit;
 }
 
 MapFit adjust_globally(const BundleOptions& bundle, std::uint32_t segment, std::span<const ControlLandmark> controls,
@@ -186,9 +187,10 @@ MapFit adjust_globally(const BundleOptions& bundle, std::uint32_t segment, std::
     add_controls(controls, &extract);
     const BundleReport report = adjust_bundle(bundle, &extract.problem, on_iteration);
     write_back(extract, map);
-    fit = measure_fit(bundle, extract);
+    const std::vector<BundleResidual> residuals = bundle_residuals(bundle, extract.problem);
+    fit = measure_fit(bundle, extract, residuals);
     if (report.is_stopped) break;
-    num_removed += remove_outliers(bundle, extract, max_pixel_sigmas, map);
+    num_removed += remove_outliers(extract, residuals, max_pixel_sigmas, map);
   }
   fit.num_removed = num_removed;
   for (std::uint32_t i = 0; i < map->landmarks().size(); ++i) map->summarize(i);

@@ -21,16 +21,17 @@ struct LocalAdjustmentOptions {
   double max_pixel_sigmas = 3.0;   ///< sightings farther off afterwards are removed
 };
 
-/// Adjusts the keyframe, its best neighbours and what they see; other keyframes that see it hold it in place. The first
-/// keyframe of the segment never moves.
-BundleReport adjust_locally(const BundleOptions& bundle, const LocalAdjustmentOptions& options, std::uint32_t keyframe, SlamMap* map);
-
+/// How well keyframes and landmarks agree after an adjustment.
 struct MapFit {
   std::uint64_t num_sightings = 0, num_removed = 0;
   double median_px = 0, p90_px = 0;              ///< reprojection error, pixels of level 0
-  double median_depth_sigmas = 0;                ///< |depth residual|
+  double median_depth_sigmas = 0;                ///< |depth residual|, of the noise that the adjustment was given
   double median_depth_m = 0;
 };
+
+/// Adjusts the keyframe, its best neighbours and what they see; other keyframes that see it hold it in place. The first
+/// keyframe of the segment never moves.
+MapFit adjust_locally(const BundleOptions& bundle, const LocalAdjustmentOptions& options, std::uint32_t keyframe, SlamMap* map);
 
 /// A surveyed point that keyframes see. It is no landmark of the map: nobody finds it by its looks.
 struct ControlLandmark {

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/slam/depth_bridge.h"
+#include "core/slam/depth_weight.h"
 #include "core/slam/far_landmarks.h"
 #include "core/slam/loop_closing.h"
 #include "core/slam/map_adjustment.h"
@@ -127,6 +128,7 @@ class Slam {
   void end_bridge(std::uint64_t frame, ViewFeatures view, const DepthBridge::Step& step, ViewReport* report);
   bool begin_segment(std::uint64_t frame, ViewFeatures view, ViewReport* report);
   void add_keyframe(std::uint64_t frame, ViewFeatures view, const Registration& tracked, ViewReport* report);
+  void adjust_around(std::uint32_t keyframe);
   void join_leftover_segments();
   void refine_all_sightings();
   void count(const LoopReport& loop);
@@ -147,6 +149,7 @@ class Slam {
     std::uint32_t reference = 0;
     Rigid3 T_reference_camera;
   } bridge_begin_;                         ///< the last view that was tracked by its features
+  DepthWeight depth_weight_;
   std::vector<TrackedView> tracked_;
   std::map<std::uint32_t, MapFit> fits_;   ///< of the segments, after finish()
   SlamCounts counts_;
