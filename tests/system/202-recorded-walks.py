@@ -38,6 +38,21 @@ class Walk:
                               "--align-reference", self.sequence, "--json"))
 
 
+def agreement_of_held_out_frames(work, *known_poses):
+    """Frames 300 to 599 localized in a map of the first 300, against the images of those: the epipolar error in pixels.
+
+    The reference of the kitchen disagrees with its own images by more than the map does, so it cannot say which map is better.
+    """
+    sequence, camera = DATA / "kitchen", CAMERAS / "7scenes.toml"
+    first_half, found, walk = work / "half.cmap", work / "held_out.tum", work / "half.tum"
+    mapped = ["--mapped", sequence, "--mapped-frames", "0:300"] if known_poses else ["--mapped", walk]
+    run(CAMLOC_MAP, "build", "--sequence", sequence, "--camera", camera, "--out", first_half, "--frames", "0:300",
+        *(known_poses or ("--trajectory", walk)))
+    run(CAMLOC, "localize", "--map", first_half, "--sequence", sequence, "--camera", camera, "--frames", "300:600:5", "--mode", "single",
+        "--out", found)
+    return json.loads(run(CAMLOC, "epipolar", "--estimate", found, "--sequence", sequence, "--camera", camera, *mapped, "--json"))
+
+
 def mean_to_point_m(report):
     return report["distances"]["landmark_to_point"]["mean_m"]
 
@@ -50,6 +65,12 @@ def main():
         assert kitchen.trajectory_error_m() <= 0.05
         surface = kitchen.surface()
         assert mean_to_point_m(surface) <= 0.01, surface
+
+        without, given = agreement_of_held_out_frames(work), agreement_of_held_out_frames(work, "--poses", "embedded")
+        assert without["poses_compared"] >= given["poses_compared"] - 2, (without, given)
+        assert without["epipolar_error_px"]["median"] <= 0.7, without
+        assert without["epipolar_error_px"]["median"] < 0.8 * given["epipolar_error_px"]["median"], (without, given)
+        assert without["epipolar_error_px"]["p90"] < 0.5 * given["epipolar_error_px"]["p90"], (without, given)
 
         room = Walk("tum_fr1_rpy", "tum-fr1.toml", work)
         assert room.summary["slam"]["lost"] == 0, room.summary

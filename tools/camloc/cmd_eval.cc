@@ -10,9 +10,8 @@
 
 #include "core/map/map_view.h"
 #include "drivers/camera_file.h"
-#include "drivers/frame_selection.h"
-#include "drivers/sequence.h"
 #include "tools/camloc/commands.h"
+#include "tools/camloc/recorded_poses.h"
 #include "tools/camloc/top_view.h"
 #include "tools/camloc/trajectory_error.h"
 #include "tools/common/output_path.h"
@@ -27,37 +26,13 @@ struct EvalArguments {
   bool is_json = false;
 };
 
-/// The reference as poses of the colour camera, and how many frames it has.
-struct Reference {
-  std::vector<StampedPose> poses;
-  std::uint64_t num_frames = 0;
-};
-
-Result<Reference> read_reference_folder(const std::string& path, const std::string& frames, const std::optional<Rigid3>& T_color_depth) {
-  auto sequence = read_sequence(path);
-  if (!sequence) return sequence.status();
-  auto selected = select_frames(frames, "", sequence->frames.size());
-  if (!selected) return selected.status();
-  auto poses = read_embedded_poses(*sequence);
-  if (!poses) return poses.status();
-  Reference reference;
-  reference.num_frames = selected->size();
-  for (const std::size_t i : *selected) {
-    if (!(*poses)[i]) continue;
-    Rigid3 T_map_color = *(*poses)[i];
-    if (T_color_depth) T_map_color = T_map_color * T_color_depth->inverse();
-    reference.poses.push_back({sequence->frames[i].stamp_ns, T_map_color});
-  }
-  return reference;
-}
-
-Result<Reference> read_reference(const EvalArguments& arguments, const std::string& path, const std::string& frames,
+Result<RecordedPoses> read_reference(const EvalArguments& arguments, const std::string& path, const std::string& frames,
                                  const EstimatedTrajectory& estimate) {
   if (!std::filesystem::is_directory(path)) {
     auto poses = read_tum_trajectory(path);
     if (!poses) return poses.status();
     const std::uint64_t count = poses->size();
-    return Reference{std::move(poses).value(), count};
+    return RecordedPoses{std::move(poses).value(), count};
   }
   std::optional<Rigid3> T_color_depth = estimate.T_color_depth;
   if (!arguments.camera_path.empty()) {
@@ -65,7 +40,7 @@ Result<Reference> read_reference(const EvalArguments& arguments, const std::stri
     if (!camera) return camera.status();
     T_color_depth = camera->poses_are_of_depth_camera ? std::optional(camera->T_color_depth) : std::nullopt;
   }
-  return read_reference_folder(path, frames, T_color_depth);
+  return read_recorded_poses(path, frames, T_color_depth);
 }
 
 Json statistics_json(const ErrorStatistics& s) { return {{"median", s.median}, {"mean", s.mean}, {"rmse", s.rmse}, {"p90", s.p90}, {"max", s.max}}; }
@@ -110,7 +85,7 @@ void print_errors(const TrajectoryErrors& errors, const EstimatedTrajectory& est
   if (estimate.suspect_focal_scale) std::printf("WARNING       calibration: focal length should be %.3f times the one used\n", *estimate.suspect_focal_scale);
 }
 
-Status draw(const EvalArguments& arguments, const EstimatedTrajectory& estimate, const Reference& reference, const TrajectoryErrors& errors) {
+Status draw(const EvalArguments& arguments, const EstimatedTrajectory& estimate, const RecordedPoses& reference, const TrajectoryErrors& errors) {
   std::optional<MapView> map;
   if (!arguments.map_path.empty()) {
     auto opened = MapView::open(arguments.map_path);
@@ -134,12 +109,12 @@ Status draw(const EvalArguments& arguments, const EstimatedTrajectory& estimate,
   return write_top_view(view, arguments.png_path);
 }
 
-ReferencePose lookup(const Reference& reference) {
+ReferencePose lookup(const RecordedPoses& reference) {
   return [&reference](std::int64_t stamp_ns) { return pose_at(reference.poses, stamp_ns); };
 }
 
 /// The motion to apply to the estimate, by itself or by another trajectory in the same frame.
-Result<std::optional<Rigid3>> find_alignment(const EvalArguments& arguments, const EstimatedTrajectory& estimate, const Reference& reference) {
+Result<std::optional<Rigid3>> find_alignment(const EvalArguments& arguments, const EstimatedTrajectory& estimate, const RecordedPoses& reference) {
   using Alignment = std::optional<Rigid3>;
   if (arguments.align_by_path.empty()) {
     if (arguments.align == "se3") return Alignment(align_by_positions(estimate, lookup(reference)));

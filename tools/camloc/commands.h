@@ -13,6 +13,7 @@ namespace camloc::tools {
 
 void add_localize_command(CLI::App& app, int& exit_code);
 void add_eval_command(CLI::App& app, int& exit_code);
+void add_epipolar_command(CLI::App& app, int& exit_code);
 void add_map_command(CLI::App& app, int& exit_code);      ///< info and verify; build is the program camloc-map
 void add_monitor_command(CLI::App& app, int& exit_code);
 void add_ctl_command(CLI::App& app, int& exit_code);

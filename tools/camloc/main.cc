@@ -25,6 +25,7 @@ struct Command {
 constexpr std::array kCommands{
     Command{"localize", camloc::tools::add_localize_command},
     Command{"eval", camloc::tools::add_eval_command},
+    Command{"epipolar", camloc::tools::add_epipolar_command},
     Command{"map", camloc::tools::add_map_command},
     Command{"camera", camloc::tools::add_camera_command},
     Command{"record", camloc::tools::add_record_command},

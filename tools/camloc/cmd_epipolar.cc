@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// `camloc epipolar`: a trajectory against the images it is of, where there is no reference, or none to be trusted.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/base/order_statistics.h"
+#include "drivers/camera_file.h"
+#include "drivers/frame_source.h"
+#include "tools/camloc/commands.h"
+#include "tools/camloc/epipolar_error.h"
+#include "tools/camloc/recorded_poses.h"
+#include "tools/camloc/sequence_run.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/progress_line.h"
+#include "tools/common/trajectory_file.h"
+
+namespace camloc::tools {
+namespace {
+
+struct EpipolarArguments {
+  std::string estimate_path, mapped_path, mapped_frames, sequence_path, camera_path;
+  std::size_t num_partners = 3;
+  double min_gap_s = 0.5;
+  bool is_json = false;
+};
+
+/// Views by their time of capture; those without features yet only have a pose.
+using Views = std::map<std::int64_t, ViewFeatures>;
+
+struct ViewPair {
+  std::int64_t estimated_ns, mapped_ns;
+};
+
+/// What the poses are compared with: a file, the poses of a recording, or the estimate itself.
+Result<EstimatedTrajectory> read_mapped(const EpipolarArguments& arguments, const RgbdCamera& camera) {
+  if (arguments.mapped_path.empty()) return read_trajectory(arguments.estimate_path);
+  if (!std::filesystem::is_directory(arguments.mapped_path)) return read_trajectory(arguments.mapped_path);
+  auto recorded = read_recorded_poses(arguments.mapped_path, arguments.mapped_frames,
+                                      camera.poses_are_of_depth_camera ? std::optional(camera.T_color_depth) : std::nullopt);
+  if (!recorded) return recorded.status();
+  EstimatedTrajectory trajectory;
+  for (const StampedPose& pose : recorded->poses) trajectory.poses.push_back({pose.stamp_ns, pose.T_world_camera, std::nullopt});
+  return trajectory;
+}
+
+/// Each pose of the estimate with the mapped ones that see most of the same.
+std::vector<ViewPair> pair_views(const EstimatedTrajectory& estimate, const EstimatedTrajectory& mapped, const EpipolarArguments& arguments) {
+  const auto min_gap_ns = static_cast<std::int64_t>(1e9 * arguments.min_gap_s);
+  std::vector<Rigid3> poses;
+  for (const EstimatedPose& pose : mapped.poses) poses.push_back(pose.T_map_camera);
+  std::vector<ViewPair> pairs;
+  std::vector<bool> is_excluded(poses.size());
+  for (const EstimatedPose& pose : estimate.poses) {
+    for (std::size_t i = 0; i < poses.size(); ++i) is_excluded[i] = std::abs(mapped.poses[i].stamp_ns - pose.stamp_ns) < min_gap_ns;
+    for (const std::size_t i : most_similar_views(pose.T_map_camera, poses, is_excluded, arguments.num_partners)) {
+      pairs.push_back({pose.stamp_ns, mapped.poses[i].stamp_ns});
+    }
+  }
+  return pairs;
+}
+
+void add_poses(const EstimatedTrajectory& trajectory, Views* views) {
+  for (const EstimatedPose& pose : trajectory.poses) {
+    ViewFeatures& view = (*views)[pose.stamp_ns];
+    view.stamp_ns = pose.stamp_ns;
+    view.T_map_camera = pose.T_map_camera;
+  }
+}
+
+/// The frames of the recording that a pair needs, as a selection; kInvalid where a pose is of no frame.
+Result<std::string> frames_of(const std::vector<ViewPair>& pairs, const EpipolarArguments& arguments) {
+  auto sequence = read_sequence(arguments.sequence_path);
+  if (!sequence) return sequence.status();
+  std::map<std::int64_t, bool> is_found;
+  for (const ViewPair& pair : pairs) is_found[pair.estimated_ns] = is_found[pair.mapped_ns] = false;
+  std::string selection;
+  for (std::size_t i = 0; i < sequence->frames.size(); ++i) {
+    const auto wanted = is_found.find(sequence->frames[i].stamp_ns);
+    if (wanted == is_found.end()) continue;
+    wanted->second = true;
+    selection += (selection.empty() ? "" : ",") + std::to_string(i) + ":" + std::to_string(i + 1);
+  }
+  const auto num_missing = std::count_if(is_found.begin(), is_found.end(), [](const auto& entry) { return !entry.second; });
+  if (num_missing == 0) return selection;
+  return Status(ErrorCode::kInvalid, arguments.sequence_path + ": has no frame at the times of " + std::to_string(num_missing) + " of " +
+                                         std::to_string(is_found.size()) + " poses: is it the recording that the trajectories are of?");
+}
+
+Status extract_features(const std::string& selection, const EpipolarArguments& arguments, const RgbdCamera& camera, const OrbOptions& orb, Views* views) {
+  auto source = open_frame_source(with_selection(arguments.sequence_path, selection, ""));
+  if (!source) return source.status();
+  ViewExtractor extractor(camera, orb);
+  ProgressLine progress(source.value()->info().num_frames.value_or(0));
+  const InterruptGuard guard;
+  FrameBuffer buffer;
+  std::uint64_t num_read = 0;
+  while (!InterruptGuard::is_interrupted()) {
+    const Status status = source.value()->next(&buffer, std::chrono::milliseconds(1000));
+    if (status.code() == ErrorCode::kEnd) return Status::ok();
+    if (status.code() == ErrorCode::kTimeout || status.code() == ErrorCode::kCorrupt) continue;
+    if (!status) return status;
+    const Frame frame = buffer.view();
+    if (const Status check = extractor.check(frame); !check) return check;
+    ViewFeatures& view = (*views)[frame.stamp_ns];
+    const Rigid3 T_map_camera = view.T_map_camera;
+    view = extractor.extract(frame);
+    view.T_map_camera = T_map_camera;
+    progress.show(++num_read);
+  }
+  return {ErrorCode::kUnavailable, "interrupted"};
+}
+
+struct Agreement {
+  std::size_t num_pairs = 0, num_poses = 0;   ///< image pairs that share enough, and poses of the estimate with one
+  double median_px = 0, p90_px = 0;           ///< of the pairs' medians
+};
+
+Agreement measure(const std::vector<ViewPair>& pairs, const Views& views, EpipolarMeter* meter) {
+  std::vector<double> errors_px;
+  Agreement agreement;
+  std::int64_t last_ns = -1;
+  for (const ViewPair& pair : pairs) {
+    const auto error = meter->measure(views.at(pair.mapped_ns), views.at(pair.estimated_ns));
+    if (!error) continue;
+    errors_px.push_back(error->median_px);
+    if (pair.estimated_ns != last_ns) ++agreement.num_poses;
+    last_ns = pair.estimated_ns;
+  }
+  agreement.num_pairs = errors_px.size();
+  agreement.median_px = upper_median(errors_px);
+  agreement.p90_px = lower_quantile(std::move(errors_px), 0.9);
+  return agreement;
+}
+
+void print(const Agreement& agreement, std::size_t num_poses, bool is_json) {
+  if (is_json) {
+    const nlohmann::ordered_json json{{"poses", num_poses}, {"poses_compared", agreement.num_poses}, {"image_pairs", agreement.num_pairs},
+                                      {"epipolar_error_px", {{"median", agreement.median_px}, {"p90", agreement.p90_px}}}};
+    std::printf("%s\n", json.dump(1).c_str());
+    return;
+  }
+  std::printf("poses           %zu, %zu of them share enough with another image\n", num_poses, agreement.num_poses);
+  std::printf("image pairs     %zu\n", agreement.num_pairs);
+  std::printf("epipolar error  median %.2f px, 90 %% below %.2f px (of the pairs' medians)\n", agreement.median_px, agreement.p90_px);
+}
+
+Status epipolar(const EpipolarArguments& arguments) {
+  auto camera = read_camera_file(arguments.camera_path);
+  if (!camera) return camera.status();
+  auto estimate = read_trajectory(arguments.estimate_path);
+  if (!estimate) return estimate.status();
+  auto mapped = read_mapped(arguments, *camera);
+  if (!mapped) return mapped.status();
+  const std::vector<ViewPair> pairs = pair_views(*estimate, *mapped, arguments);
+  const auto selection = frames_of(pairs, arguments);
+  if (!selection) return selection.status();
+
+  Views views;
+  add_poses(*mapped, &views);
+  add_poses(*estimate, &views);
+  const OrbOptions orb;
+  if (Status status = extract_features(selection.value(), arguments, *camera, orb, &views); !status) return status;
+  EpipolarMeter meter(camera->color, orb);
+  const Agreement agreement = measure(pairs, views, &meter);
+  if (agreement.num_pairs == 0) {
+    return {ErrorCode::kNotFound, arguments.estimate_path + ": no two images of these poses see the same things; give --mapped a walk through the same place"};
+  }
+  print(agreement, estimate->poses.size(), arguments.is_json);
+  return Status::ok();
+}
+
+}  // namespace
+
+void add_epipolar_command(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<EpipolarArguments>();
+  CLI::App* command = app.add_subcommand("epipolar", "Compare a trajectory with the images it is of, without a reference");
+  command->add_option("--estimate", arguments->estimate_path, "Trajectory in TUM format")->required();
+  command->add_option("--sequence", arguments->sequence_path, "Folder of the recording that the trajectories are of")->required();
+  command->add_option("--camera", arguments->camera_path, "Calibration: our TOML, or YAML of kalibr, ROS, OpenCV")->required();
+  CLI::Option* mapped = command->add_option("--mapped", arguments->mapped_path,
+                                            "Another trajectory in the same map and recording, e.g. the one that the map build wrote, or a folder "
+                                            "with poses: each pose is compared with the most similar of these (default: with others of the estimate)");
+  command->add_option("--mapped-frames", arguments->mapped_frames, "With a folder: the frames that were mapped, start:stop:step[,...]")->needs(mapped);
+  command->add_option("--partners", arguments->num_partners, "Images that each is compared with")->check(CLI::Range(1, 20))->capture_default_str();
+  command->add_option("--min-gap-s", arguments->min_gap_s, "Least time between two images that are compared, seconds")
+      ->check(CLI::Range(0.0, 3600.0))->capture_default_str();
+  command->add_flag("--json", arguments->is_json, "Print JSON");
+  command->footer("Example: camloc epipolar --estimate traj.tum --mapped walk.tum --sequence recordings/kitchen --camera camera.toml\n"
+                  "Right poses leave what the features are off by, some tenths of a pixel.\n"
+                  "Exit code: 0 done (however large the errors are), 1 failed, 2 wrong usage or configuration.");
+  command->callback([arguments, &exit_code] { exit_code = report(epipolar(*arguments)); });
+}
+
+}  // namespace camloc::tools
