@@ -33,8 +33,9 @@ TEST(EpipolarCommandTest, NeedsACameraAndARecording) {
 
 TEST(EpipolarCommandTest, AnotherRecordingIsAnError) {
   const TemporaryFolder folder;
-  (void)folder.write("rgb.txt", "5.0 rgb/5.png\n");
-  (void)folder.write("depth.txt", "5.0 depth/5.png\n");
+  for (const char* image : {"rgb.png", "depth.png"}) (void)folder.write(image, "");
+  (void)folder.write("rgb.txt", "5.0 rgb.png\n");
+  (void)folder.write("depth.txt", "5.0 depth.png\n");
   const CommandOutput output =
       run_command(add_epipolar_command, {"epipolar", "--estimate", folder.write("e.tum", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n"), "--sequence", folder.path(),
                                          "--camera", folder.write("camera.toml", kCamera)});
