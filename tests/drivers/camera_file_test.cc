@@ -39,7 +39,7 @@ void expect_same(const RgbdCamera& a, const RgbdCamera& b) {
   EXPECT_EQ(a.poses_are_of_depth_camera, b.poses_are_of_depth_camera);
 }
 
-RgbdCamera parse(const std::string& text) {
+RgbdCamera camera_of(const std::string& text) {
   const auto camera = parse_camera(text, "dir/cam.toml");
   EXPECT_TRUE(camera.is_ok()) << camera.status().message();
   return camera ? *camera : RgbdCamera{};
@@ -51,7 +51,7 @@ TEST(CameraFile, EveryShippedFileIsReadAndRoundTrips) {
     const auto camera = read_camera_file(entry.path().string());
     ASSERT_TRUE(camera.is_ok()) << camera.status().message();
     EXPECT_EQ(camera->name, entry.path().stem().string());
-    expect_same(parse(format_camera_toml(*camera)), *camera);
+    expect_same(camera_of(format_camera_toml(*camera)), *camera);
     ++count;
   }
   EXPECT_GE(count, 3);
@@ -77,7 +77,7 @@ TEST(CameraFile, ShippedValues) {
 }
 
 TEST(CameraFile, ShortFileGetsDefaults) {
-  const RgbdCamera camera = parse(kGood);
+  const RgbdCamera camera = camera_of(kGood);
   EXPECT_EQ(camera.name, "cam");
   EXPECT_EQ(camera.color.fx, 525.0);
   EXPECT_TRUE(camera.is_depth_registered);
@@ -86,7 +86,7 @@ TEST(CameraFile, ShortFileGetsDefaults) {
 }
 
 TEST(CameraFile, OddNumbersRoundTripToTheLastBit) {
-  RgbdCamera camera = parse(kGood);
+  RgbdCamera camera = camera_of(kGood);
   camera.name = "a \"quoted\" \\ name\n";
   camera.color.fx = 525.0 + 1.0 / 3;
   camera.color.lens = LensModel::kEquidistant;
@@ -97,7 +97,7 @@ TEST(CameraFile, OddNumbersRoundTripToTheLastBit) {
   camera.T_color_depth = {exp_so3({0.1, -0.2, 0.3}), {-0.0251234567890123, 1e-9, 0}};
   camera.depth_unit_m = 1 / 5000.0;
   camera.poses_are_of_depth_camera = true;
-  expect_same(parse(format_camera_toml(camera)), camera);
+  expect_same(camera_of(format_camera_toml(camera)), camera);
 }
 
 TEST(CameraFile, ErrorsNameFileAndLine) {

@@ -7,7 +7,7 @@
 namespace camloc {
 namespace {
 
-RgbdCamera parse(const std::string& text) {
+RgbdCamera parsed(const std::string& text) {
   const auto camera = parse_camera(text, "dir/cam.yaml");
   EXPECT_TRUE(camera.is_ok()) << camera.status().message();
   return camera ? *camera : RgbdCamera{};
@@ -59,7 +59,7 @@ DepthMapFactor: 5000.0
 )";
 
 TEST(CameraYaml, Kalibr) {
-  const RgbdCamera camera = parse(kKalibr);
+  const RgbdCamera camera = parsed(kKalibr);
   EXPECT_EQ(camera.name, "cam");
   EXPECT_EQ(camera.color.width, 752);
   EXPECT_EQ(camera.color.fy, 460.3);
@@ -73,27 +73,27 @@ TEST(CameraYaml, Kalibr) {
 TEST(CameraYaml, KalibrEquidistant) {
   std::string text = kKalibr;
   text.replace(text.find("radtan"), 6, "equidistant");
-  EXPECT_EQ(parse(text).color.lens, LensModel::kEquidistant);
+  EXPECT_EQ(parsed(text).color.lens, LensModel::kEquidistant);
 }
 
 TEST(CameraYaml, RosCameraInfo) {
-  const RgbdCamera camera = parse(kRos);
+  const RgbdCamera camera = parsed(kRos);
   EXPECT_EQ(camera.name, "rgb_PS1080");
   EXPECT_EQ(camera.color.fx, 525.1);
   EXPECT_EQ(camera.color.cy, 239.5);
   EXPECT_EQ(camera.color.distortion[4], 1.16);
-  const RgbdCamera message = parse("height: 480\nwidth: 640\ndistortion_model: equidistant\nd: [0.1, 0.2, 0.3, 0.4]\nk: [1.5, 0, 320, 0, 1.5, 240, 0, 0, 1]\n");
+  const RgbdCamera message = parsed("height: 480\nwidth: 640\ndistortion_model: equidistant\nd: [0.1, 0.2, 0.3, 0.4]\nk: [1.5, 0, 320, 0, 1.5, 240, 0, 0, 1]\n");
   EXPECT_EQ(message.color.lens, LensModel::kEquidistant);
   EXPECT_EQ(message.color.width, 640);
 }
 
 TEST(CameraYaml, ZeroDistortionIsAPinhole) {
-  const RgbdCamera camera = parse("width: 640\nheight: 480\nD: [0, 0, 0, 0, 0, 0, 0, 0]\nK: [525, 0, 320, 0, 525, 240, 0, 0, 1]\n");
+  const RgbdCamera camera = parsed("width: 640\nheight: 480\nD: [0, 0, 0, 0, 0, 0, 0, 0]\nK: [525, 0, 320, 0, 525, 240, 0, 0, 1]\n");
   EXPECT_EQ(camera.color.lens, LensModel::kPinhole);
 }
 
 TEST(CameraYaml, OpenCvCalibration) {
-  const RgbdCamera camera = parse(R"(%YAML:1.0
+  const RgbdCamera camera = parsed(R"(%YAML:1.0
 ---
 image_width: 640
 image_height: 480
@@ -113,14 +113,14 @@ distortion_coefficients: !!opencv-matrix
 }
 
 TEST(CameraYaml, OrbSlamWithDepthFactor) {
-  const RgbdCamera camera = parse(kOrbSlam);
+  const RgbdCamera camera = parsed(kOrbSlam);
   EXPECT_EQ(camera.color.fx, 517.306408);
   EXPECT_EQ(camera.color.distortion, (std::array<double, 5>{0.262383, -0.953104, -0.005358, 0.002628, 1.163314}));
   EXPECT_DOUBLE_EQ(camera.depth_unit_m, 0.0002);
   std::string three = kOrbSlam;
   for (const char* key : {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"}) three.replace(three.find(std::string("Camera.") + key), 9, std::string("Camera1.") + key);
   three.insert(three.find('\n') + 1, "File.version: \"1.0\"\n");
-  EXPECT_EQ(parse(three).color.distortion, camera.color.distortion);
+  EXPECT_EQ(parsed(three).color.distortion, camera.color.distortion);
 }
 
 TEST(CameraYaml, ErrorsNameFileAndLineOrKey) {

@@ -36,7 +36,7 @@ struct Simulation {
   }
 };
 
-class DeviceClockDrift : public testing::TestWithParam<double> {};
+class DeviceClockDrift : public ::testing::TestWithParam<double> {};
 
 TEST_P(DeviceClockDrift, FindsCaptureTimeAndDrift) {
   Simulation simulation;
@@ -56,7 +56,7 @@ TEST_P(DeviceClockDrift, FindsCaptureTimeAndDrift) {
   EXPECT_LT(worst_ns, 1e6);
 }
 
-INSTANTIATE_TEST_SUITE_P(Crystals, DeviceClockDrift, testing::Values(-150.0, -20.0, 0.0, 20.0, 150.0));
+INSTANTIATE_TEST_SUITE_P(Crystals, DeviceClockDrift, ::testing::Values(-150.0, -20.0, 0.0, 20.0, 150.0));
 
 TEST(DeviceClockTest, FirstFrameIsTakenToArriveAtOnce) {
   DeviceClock clock;

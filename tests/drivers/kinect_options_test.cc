@@ -11,10 +11,10 @@
 namespace camloc::kinect {
 namespace {
 
-Result<KinectOptions> parse(const std::string& url) { return parse_kinect_options(*parse_source_url(url)); }
+Result<KinectOptions> options_of(const std::string& url) { return parse_kinect_options(*parse_source_url(url)); }
 
 TEST(KinectOptions, DefaultsLeaveTheDeviceAlone) {
-  const Result<KinectOptions> options = parse("kinect://");
+  const Result<KinectOptions> options = options_of("kinect://");
   ASSERT_TRUE(options.is_ok()) << options.status().message();
   EXPECT_TRUE(options->selector.empty());
   EXPECT_EQ(options->depth, DepthMode::kRegistered);
@@ -26,7 +26,7 @@ TEST(KinectOptions, DefaultsLeaveTheDeviceAlone) {
 
 TEST(KinectOptions, EverythingCanBeSet) {
   const Result<KinectOptions> options =
-      parse("kinect://A00362A08602047A?depth=raw&exposure_us=8000&gain=2.5&white_balance=manual&led=off&tilt_deg=-12.5");
+      options_of("kinect://A00362A08602047A?depth=raw&exposure_us=8000&gain=2.5&white_balance=manual&led=off&tilt_deg=-12.5");
   ASSERT_TRUE(options.is_ok()) << options.status().message();
   EXPECT_EQ(options->selector, "A00362A08602047A");
   EXPECT_EQ(options->depth, DepthMode::kRaw);
@@ -36,8 +36,8 @@ TEST(KinectOptions, EverythingCanBeSet) {
   EXPECT_FALSE(options->is_led_status);
   EXPECT_EQ(options->fixed_led, Led::kOff);
   EXPECT_EQ(options->tilt_deg, -12.5);
-  EXPECT_EQ(parse("kinect://1?depth=off&led=keep&auto_exposure=0")->depth, DepthMode::kOff);
-  EXPECT_FALSE(parse("kinect://1?led=keep")->fixed_led);
+  EXPECT_EQ(options_of("kinect://1?depth=off&led=keep&auto_exposure=0")->depth, DepthMode::kOff);
+  EXPECT_FALSE(options_of("kinect://1?led=keep")->fixed_led);
 }
 
 TEST(KinectOptions, MistakesAreNamed) {
@@ -52,7 +52,7 @@ TEST(KinectOptions, MistakesAreNamed) {
       {"kinect://?auto_exposure=1&exposure_us=5000", "contradicts"},
   };
   for (const auto& [url, hint] : mistakes) {
-    const Result<KinectOptions> options = parse(url);
+    const Result<KinectOptions> options = options_of(url);
     ASSERT_FALSE(options.is_ok()) << url;
     EXPECT_EQ(options.status().code(), ErrorCode::kInvalid) << url;
     EXPECT_NE(options.status().message().find(hint), std::string::npos) << options.status().message();

@@ -20,7 +20,7 @@ struct Expected {
   std::size_t least_with_pose;
 };
 
-class Recordings : public testing::TestWithParam<Expected> {};
+class Recordings : public ::testing::TestWithParam<Expected> {};
 
 TEST_P(Recordings, IndexPosesAndFirstFrames) {
   const Expected expected = GetParam();
@@ -51,7 +51,7 @@ TEST_P(Recordings, IndexPosesAndFirstFrames) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Recordings,
-                         testing::Values(Expected{"kitchen", "7scenes", 600, 600, 600}, Expected{"tum_fr1_rpy", "tum", 362, 350, 350},
+                         ::testing::Values(Expected{"kitchen", "7scenes", 600, 600, 600}, Expected{"tum_fr1_rpy", "tum", 362, 350, 350},
                                          Expected{"tum_fr1_xyz", "tum", 10, 10, 10}, Expected{"elsewhere", "7scenes", 13, 13, 0}),
                          [](const auto& one) { return std::string(one.param.folder); });
 

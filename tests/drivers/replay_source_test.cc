@@ -12,7 +12,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-std::unique_ptr<FrameSource> open(const std::string& url) {
+std::unique_ptr<FrameSource> open_replay(const std::string& url) {
   auto source = open_frame_source(url);
   EXPECT_TRUE(source.is_ok()) << source.status().message();
   return source ? std::move(source).value() : nullptr;
@@ -28,7 +28,7 @@ std::vector<std::uint64_t> all_sequences(FrameSource* source) {
 TEST(ReplaySource, DeliversEveryFrameOnce) {
   const TestFolder folder;
   write_7scenes(folder, 4);
-  const auto source = open("replay://" + folder.path());
+  const auto source = open_replay("replay://" + folder.path());
   ASSERT_NE(source, nullptr);
   EXPECT_EQ(source->info().color_width, 32);
   EXPECT_EQ(source->info().color_height, 24);
@@ -50,7 +50,7 @@ TEST(ReplaySource, DeliversEveryFrameOnce) {
 TEST(ReplaySource, SelectionKeepsIndexInTheRecording) {
   const TestFolder folder;
   write_7scenes(folder, 8);
-  const auto source = open(folder.path() + "?frames=1:7:2,-1&exclude=3&rate_hz=10");
+  const auto source = open_replay(folder.path() + "?frames=1:7:2,-1&exclude=3&rate_hz=10");
   ASSERT_NE(source, nullptr);
   EXPECT_EQ(source->info().num_frames, 3U);
   FrameBuffer frame;
@@ -63,7 +63,7 @@ TEST(ReplaySource, SelectionKeepsIndexInTheRecording) {
 TEST(ReplaySource, LoopGoesOnInTimeAndNumber) {
   const TestFolder folder;
   write_7scenes(folder, 3);
-  const auto source = open("replay://" + folder.path() + "?loop=1&frames=0,2&rate_hz=10");
+  const auto source = open_replay("replay://" + folder.path() + "?loop=1&frames=0,2&rate_hz=10");
   ASSERT_NE(source, nullptr);
   FrameBuffer frame;
   for (std::uint64_t round = 0; round < 3; ++round) {
@@ -82,7 +82,7 @@ TEST(ReplaySource, BrokenFrameIsReportedAndPassed) {
   folder.write("frame-000001.depth.png", "text");
   ASSERT_TRUE(write_jpeg(folder / "frame-000002.color.jpg", smooth_color(16, 12)));
   std::filesystem::remove(folder / "frame-000003.depth.png");
-  const auto source = open("replay://" + folder.path());
+  const auto source = open_replay("replay://" + folder.path());
   ASSERT_NE(source, nullptr);
   EXPECT_EQ(source->info().color_width, 16 * 2) << "the first readable image counts";
   std::filesystem::remove(folder / "frame-000004.color.jpg");
@@ -104,7 +104,7 @@ TEST(ReplaySource, FolderThatGoesAwayIsUnavailable) {
   const std::string path = folder / "sub";
   std::filesystem::create_directory(path);
   ASSERT_TRUE(write_jpeg(path + "/frame-000000.color.jpg", smooth_color(16, 12)));
-  const auto source = open(path);
+  const auto source = open_replay(path);
   ASSERT_NE(source, nullptr);
   std::filesystem::remove_all(path);
   FrameBuffer frame;
@@ -120,14 +120,14 @@ TEST(ReplaySource, PathsRelativeAndWithSpaces) {
   ASSERT_TRUE(write_jpeg(path + "/frame-000000.color.jpg", smooth_color(16, 12)));
   for (const std::string& url : {"replay://" + folder.path() + "/my%20data%20100%25", "replay://" + path, path,
                                  std::filesystem::relative(path).string(), "replay://" + std::filesystem::relative(path).string()}) {
-    EXPECT_NE(open(url), nullptr) << url;
+    EXPECT_NE(open_replay(url), nullptr) << url;
   }
 }
 
 TEST(ReplaySource, RecordedSpeedWaitsAndHonoursTheTimeout) {
   const TestFolder folder;
   write_7scenes(folder, 3);
-  const auto source = open("replay://" + folder.path() + "?speed=1&rate_hz=20");
+  const auto source = open_replay("replay://" + folder.path() + "?speed=1&rate_hz=20");
   ASSERT_NE(source, nullptr);
   FrameBuffer frame;
   const auto start = std::chrono::steady_clock::now();
@@ -146,7 +146,7 @@ TEST(ReplaySource, CameraFileOfTheRecording) {
   const TestFolder folder;
   write_7scenes(folder, 1);
   std::filesystem::copy_file(source_folder() / "config/cameras/kinect-v1.toml", folder / "camera.toml");
-  const auto source = open(folder.path());
+  const auto source = open_replay(folder.path());
   ASSERT_NE(source, nullptr);
   ASSERT_TRUE(source->info().camera);
   EXPECT_EQ(source->info().camera->name, "kinect-v1");

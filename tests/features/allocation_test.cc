@@ -57,7 +57,7 @@ int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
 namespace camloc {
 namespace {
 
-class AllocationTest : public testing::Test {
+class AllocationTest : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!CAMLOC_COUNTS_MALLOC) GTEST_SKIP() << "a sanitizer owns malloc";

@@ -71,7 +71,7 @@ TEST(Hamming, AvailableKernelsStartWithScalarAndEndWithTheBest) {
   EXPECT_EQ(kernels.back(), best_hamming_kernel());
 }
 
-class HammingKernelTest : public testing::TestWithParam<HammingKernel> {};
+class HammingKernelTest : public ::testing::TestWithParam<HammingKernel> {};
 
 TEST_P(HammingKernelTest, FindsNearestAndSecondAtAllSizes) {
   for (const std::size_t num_train : {0, 1, 2, 7, 15, 16, 17, 31, 32, 100, 511, 512, 513, 1040})
@@ -129,7 +129,7 @@ TEST_P(HammingKernelTest, WorksBeyondSixteenBitPositions) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kernels, HammingKernelTest, testing::ValuesIn(available_hamming_kernels()),
+INSTANTIATE_TEST_SUITE_P(Kernels, HammingKernelTest, ::testing::ValuesIn(available_hamming_kernels()),
                          [](const auto& kernel) { return std::string(to_string(kernel.param)); });
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace camloc {
 namespace {
 
-PaddedImage padded(const cv::Mat& image) {
+PaddedImage padded_copy(const cv::Mat& image) {
   PaddedImage out;
   out.allocate(image.cols, image.rows);
   for (int y = 0; y < image.rows; ++y) std::copy_n(image.ptr(y), image.cols, out.row(y));
@@ -28,14 +28,14 @@ struct Sizes {
   int src_width, src_height, dst_width, dst_height;
 };
 
-class ExactResizeTest : public testing::TestWithParam<Sizes> {};
+class ExactResizeTest : public ::testing::TestWithParam<Sizes> {};
 
 TEST_P(ExactResizeTest, EqualsOpenCv) {
   const Sizes sizes = GetParam();
   const cv::Mat image = noise_image(sizes.src_width, sizes.src_height, 1);
   cv::Mat expected;
   cv::resize(image, expected, cv::Size(sizes.dst_width, sizes.dst_height), 0, 0, cv::INTER_LINEAR_EXACT);
-  const PaddedImage src = padded(image);
+  const PaddedImage src = padded_copy(image);
   PaddedImage dst;
   dst.allocate(sizes.dst_width, sizes.dst_height);
   ExactResize resize(sizes.src_width, sizes.src_height, sizes.dst_width, sizes.dst_height);
@@ -44,7 +44,7 @@ TEST_P(ExactResizeTest, EqualsOpenCv) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, ExactResizeTest,
-                         testing::Values(Sizes{640, 480, 533, 400}, Sizes{533, 400, 444, 333}, Sizes{444, 333, 370, 278},
+                         ::testing::Values(Sizes{640, 480, 533, 400}, Sizes{533, 400, 444, 333}, Sizes{444, 333, 370, 278},
                                          Sizes{641, 479, 534, 399}, Sizes{100, 100, 43, 91}, Sizes{17, 3, 14, 2},
                                          Sizes{5, 5, 4, 4}, Sizes{640, 1, 533, 1}, Sizes{2, 2, 1, 1}, Sizes{333, 33, 111, 11},
                                          Sizes{31, 29, 62, 58}, Sizes{300, 200, 300, 150}));

@@ -61,7 +61,7 @@ TEST(FeatureGrid, IgnoresFeaturesBeyondItsSize) {
   EXPECT_EQ(grid.bucket(0, 0).size(), 3U);
 }
 
-class GuidedMatcherTest : public testing::Test {
+class GuidedMatcherTest : public ::testing::Test {
  protected:
   std::span<const Match> match(const Features& features, const std::vector<ProjectedLandmark>& landmarks,
                                const std::vector<Descriptor>& descriptors) {
@@ -128,7 +128,7 @@ TEST_F(GuidedMatcherTest, SurvivesNonsense) {
   EXPECT_EQ(match(features, landmarks, features.descriptors).size(), 0U);
 }
 
-class CandidateMatcherTest : public testing::Test {
+class CandidateMatcherTest : public ::testing::Test {
  protected:
   CandidateMatcherTest() {
     std::vector<Keypoint> keypoints(300);

@@ -12,11 +12,11 @@
 namespace camloc {
 namespace {
 
-using Views = std::vector<std::vector<std::uint32_t>>;
+using ItemViews = std::vector<std::vector<std::uint32_t>>;
 
-Views random_views(std::mt19937& random, std::size_t num_views, std::uint32_t num_items, double density) {
+ItemViews random_views(std::mt19937& random, std::size_t num_views, std::uint32_t num_items, double density) {
   std::bernoulli_distribution sees(density);
-  Views views(num_views);
+  ItemViews views(num_views);
   for (std::uint32_t item = 0; item < num_items; ++item) {
     for (auto& view : views) {
       if (sees(random)) view.push_back(item);
@@ -32,7 +32,7 @@ std::uint32_t mask_of(const std::vector<std::uint32_t>& items) {
 }
 
 /// Size of the smallest cover of everything that is in some view, by trying all subsets.
-int minimum_cover(const Views& views) {
+int minimum_cover(const ItemViews& views) {
   std::uint32_t all = 0;
   for (const auto& view : views) all |= mask_of(view);
   int best = static_cast<int>(views.size());
@@ -48,7 +48,7 @@ TEST(KeyframeCover, IsWithinTheGreedyBoundOfTheMinimum) {
   std::mt19937 random(1);
   int total = 0, total_minimum = 0;
   for (int trial = 0; trial < 60; ++trial) {
-    const Views views = random_views(random, 10, 24, 0.25);
+    const ItemViews views = random_views(random, 10, 24, 0.25);
     const KeyframeCover cover = cover_with_keyframes(views, 24);
     std::uint32_t covered = 0, all = 0;
     for (const std::uint32_t v : cover.views) covered |= mask_of(views[v]);
@@ -65,7 +65,7 @@ TEST(KeyframeCover, IsWithinTheGreedyBoundOfTheMinimum) {
 
 TEST(KeyframeCover, HasNoSuperfluousView) {
   std::mt19937 random(2);
-  const Views views = random_views(random, 80, 400, 0.08);
+  const ItemViews views = random_views(random, 80, 400, 0.08);
   const KeyframeCover cover = cover_with_keyframes(views, 400);
   for (const std::uint32_t left_out : cover.views) {
     std::vector<int> times(400, 0);
@@ -79,16 +79,16 @@ TEST(KeyframeCover, HasNoSuperfluousView) {
 
 TEST(KeyframeCover, RemovesAViewThatLaterOnesMakeSuperfluous) {
   // Greedy takes the middle view first; the two others then cover it completely.
-  const Views views = {{0, 1, 2, 3}, {2, 3, 4, 5, 6}, {4, 5, 6, 7}};
+  const ItemViews views = {{0, 1, 2, 3}, {2, 3, 4, 5, 6}, {4, 5, 6, 7}};
   EXPECT_EQ(cover_with_keyframes(views, 8).views, (std::vector<std::uint32_t>{0, 2}));
 }
 
 TEST(KeyframeCover, TakesTheLowerIndexAmongEquals) {
-  EXPECT_EQ(cover_with_keyframes(Views{{0, 1}, {0, 1}, {}}, 2).views, (std::vector<std::uint32_t>{0}));
+  EXPECT_EQ(cover_with_keyframes(ItemViews{{0, 1}, {0, 1}, {}}, 2).views, (std::vector<std::uint32_t>{0}));
 }
 
 TEST(KeyframeCover, LeavesItemsThatOnlyAPoorViewWouldAdd) {
-  const Views views = {{0, 1, 2, 3}, {3, 4}, {5, 6, 7}};
+  const ItemViews views = {{0, 1, 2, 3}, {3, 4}, {5, 6, 7}};
   const KeyframeCover cover = cover_with_keyframes(views, 8, 2);
   EXPECT_EQ(cover.views, (std::vector<std::uint32_t>{0, 2}));
   EXPECT_EQ(cover.uncovered, (std::vector<std::uint32_t>{4}));

@@ -13,7 +13,7 @@
 namespace camloc {
 namespace {
 
-Intrinsics test_camera() {
+Intrinsics test_intrinsics() {
   Intrinsics k;
   k.width = 640;
   k.height = 480;
@@ -60,7 +60,7 @@ void add_feature(const Intrinsics& k, const Eigen::Vector2d& pixel, double depth
 
 /// All points as the camera sees them, with noise of pixel and depth and a few flipped bits.
 ViewFeatures see(const std::vector<Point>& points, const Rigid3& T_map_camera, double noise, std::mt19937_64& random) {
-  const Intrinsics k = test_camera();
+  const Intrinsics k = test_intrinsics();
   std::normal_distribution<double> normal(0, noise);
   ViewFeatures view;
   view.T_map_camera = T_map_camera;
@@ -78,7 +78,7 @@ Rigid3 pose(double x, double y, double yaw) { return {exp_so3({0, yaw, 0}), {x, 
 TEST(LandmarkFusion, OnePointIsOneLandmark) {
   std::mt19937_64 random(11);
   const auto points = random_points(200, random);
-  LandmarkFusion fusion(test_camera(), {}, {});
+  LandmarkFusion fusion(test_intrinsics(), {}, {});
   constexpr int kViews = 12;
   for (int i = 0; i < kViews; ++i) fusion.add_view(see(points, pose(0.04 * i - 0.2, 0.01 * i, 0.01 * i), 1.0, random));
   // A few depth errors beyond three sigma may start another landmark.
@@ -107,8 +107,8 @@ TEST(LandmarkFusion, OnePointIsOneLandmark) {
 TEST(LandmarkFusion, DescribesHowALandmarkWasSeen) {
   std::mt19937_64 random(12);
   const std::vector<Point> points = {{{0, 0, 2}, {{random(), random(), random(), random()}}}};
-  LandmarkFusion fusion(test_camera(), {}, {});
-  const Intrinsics k = test_camera();
+  LandmarkFusion fusion(test_intrinsics(), {}, {});
+  const Intrinsics k = test_intrinsics();
   for (const double x : {-0.4, 0.4}) {
     ViewFeatures view;
     view.T_map_camera = pose(x, 0, 0);
@@ -131,8 +131,8 @@ TEST(LandmarkFusion, DescribesHowALandmarkWasSeen) {
 TEST(LandmarkFusion, NeverFusesAcrossADepthDisagreement) {
   std::mt19937_64 random(13);
   const Point point{{0, 0, 2}, {{random(), random(), random(), random()}}};
-  LandmarkFusion fusion(test_camera(), {}, {});
-  const Intrinsics k = test_camera();
+  LandmarkFusion fusion(test_intrinsics(), {}, {});
+  const Intrinsics k = test_intrinsics();
   for (const double depth : {2.0, 2.05, 2.3}) {  // sigma at 2 m is 2.5 cm
     ViewFeatures view;
     add_feature(k, {320, 240}, depth, 0, point.descriptor, &view);
@@ -145,10 +145,10 @@ TEST(LandmarkFusion, NeverFusesAcrossADepthDisagreement) {
 
 TEST(LandmarkFusion, UnlikeFeaturesStayApart) {
   std::mt19937_64 random(14);
-  LandmarkFusion fusion(test_camera(), {}, {});
+  LandmarkFusion fusion(test_intrinsics(), {}, {});
   for (int i = 0; i < 2; ++i) {
     ViewFeatures view;
-    add_feature(test_camera(), {320, 240}, 2, 0, {{random(), random(), random(), random()}}, &view);
+    add_feature(test_intrinsics(), {320, 240}, 2, 0, {{random(), random(), random(), random()}}, &view);
     fusion.add_view(view);
   }
   EXPECT_EQ(fusion.num_landmarks(), 2U);
@@ -157,12 +157,12 @@ TEST(LandmarkFusion, UnlikeFeaturesStayApart) {
 TEST(LandmarkFusion, SameCornerOnOtherLevelsIsOneLandmark) {
   std::mt19937_64 random(15);
   const Descriptor descriptor{{random(), random(), random(), random()}};
-  LandmarkFusion fusion(test_camera(), {}, {});
+  LandmarkFusion fusion(test_intrinsics(), {}, {});
   FusionCounts counts;
   for (int i = 0; i < 2; ++i) {
     ViewFeatures view;
     for (int level = 0; level < 3; ++level)
-      add_feature(test_camera(), {320 + 0.4 * level, 240}, 2, level, flipped(descriptor, 10, random), &view);
+      add_feature(test_intrinsics(), {320 + 0.4 * level, 240}, 2, level, flipped(descriptor, 10, random), &view);
     counts = fusion.add_view(view);
   }
   EXPECT_EQ(fusion.num_landmarks(), 1U);
@@ -178,10 +178,10 @@ TEST(LandmarkFusion, KeepsASecondAppearanceAndPutsTheCommonOneFirst) {
   const Descriptor rare{{random(), random(), random(), random()}};
   const Descriptor common = flipped(rare, 62, random);  // repeated draws leave about 50 bits
   ASSERT_GT(hamming_distance(rare, common), 40);
-  LandmarkFusion fusion(test_camera(), {}, FusionOptions{.appearance_distance = 36});
+  LandmarkFusion fusion(test_intrinsics(), {}, FusionOptions{.appearance_distance = 36});
   for (int i = 0; i < 8; ++i) {
     ViewFeatures view;
-    add_feature(test_camera(), {320, 240}, 2, 0, flipped(i < 2 ? rare : common, 3, random), &view);
+    add_feature(test_intrinsics(), {320, 240}, 2, 0, flipped(i < 2 ? rare : common, 3, random), &view);
     fusion.add_view(view);
   }
   ASSERT_EQ(fusion.num_landmarks(), 1U);
@@ -196,7 +196,7 @@ TEST(LandmarkFusion, KeepsASecondAppearanceAndPutsTheCommonOneFirst) {
 TEST(LandmarkFusion, ViewsListTheirLandmarksOnce) {
   std::mt19937_64 random(17);
   const auto points = random_points(150, random);
-  LandmarkFusion fusion(test_camera(), {}, {});
+  LandmarkFusion fusion(test_intrinsics(), {}, {});
   for (int i = 0; i < 6; ++i) fusion.add_view(see(points, pose(0.05 * i, 0, 0), 1.0, random));
   ASSERT_EQ(fusion.views().size(), 6U);
   std::uint64_t observations = 0;
@@ -215,9 +215,9 @@ TEST(LandmarkFusion, ViewsListTheirLandmarksOnce) {
 }
 
 TEST(LandmarkFusion, FeaturesWithoutDepthAddNothing) {
-  LandmarkFusion fusion(test_camera(), {}, {});
+  LandmarkFusion fusion(test_intrinsics(), {}, {});
   ViewFeatures view;
-  add_feature(test_camera(), {320, 240}, 0, 0, {}, &view);
+  add_feature(test_intrinsics(), {320, 240}, 0, 0, {}, &view);
   fusion.add_view(view);
   fusion.add_view({});
   EXPECT_EQ(fusion.num_landmarks(), 0U);

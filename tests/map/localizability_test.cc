@@ -18,7 +18,7 @@ namespace {
 
 using testing::landmarks_in_view;
 using testing::looking;
-using testing::make_room;
+using testing::make_room_map;
 using testing::Random;
 using testing::room_landmark;
 
@@ -75,7 +75,7 @@ std::vector<Rigid3> one_view_a_bay(int num_bays) {
 }
 
 TEST(LocalizabilityTest, InARichRoomAFixIsLikely) {
-  const MapData room = make_room({.landmarks_per_wall = 500});
+  const MapData room = make_room_map({.landmarks_per_wall = 500});
   std::vector<Rigid3> poses;
   for (const MapKeyframe& keyframe : room.keyframes) poses.push_back(keyframe.T_map_camera);
   const auto places = assess(room, poses);

@@ -15,12 +15,12 @@ namespace {
 using testing::Random;
 
 /// Landmarks on a wall, each seen by a few of the views in a row; descriptors told apart by chance alone.
-struct Wall {
+struct WallMap {
   MapParts parts;
   std::vector<std::vector<ViewObservation>> views;
   std::vector<Rigid3> poses;
 
-  explicit Wall(std::uint32_t num_landmarks, std::uint32_t num_views = 12, std::uint32_t descriptors = 1) {
+  explicit WallMap(std::uint32_t num_landmarks, std::uint32_t num_views = 12, std::uint32_t descriptors = 1) {
     Random random(3);
     parts.camera = testing::room_camera();
     parts.pose_sigma_m = 0.0125;
@@ -36,12 +36,12 @@ struct Wall {
     parts.views = views;
     parts.poses = poses;
   }
-  Wall(const Wall&) = delete;
-  Wall& operator=(const Wall&) = delete;
+  WallMap(const WallMap&) = delete;
+  WallMap& operator=(const WallMap&) = delete;
 };
 
 TEST(MapAssembly, KeepsEverythingWithoutABudget) {
-  const Wall wall(600);
+  const WallMap wall(600);
   MapBuildReport report;
   const auto map = assemble_map(wall.parts, {}, &report);
   ASSERT_TRUE(map.is_ok()) << map.status().message();
@@ -60,7 +60,7 @@ TEST(MapAssembly, KeepsEverythingWithoutABudget) {
 }
 
 TEST(MapAssembly, KeepsWhatIsWorthMost) {
-  Wall wall(3000);
+  WallMap wall(3000);
   // Every other landmark would be seen again by many more frames than the views that are left say.
   for (std::uint32_t i = 0; i < 3000; ++i) wall.parts.worth.push_back(i % 2 == 0 ? 4.0F : 40.0F);
   for (std::uint32_t i = 0; i < 3000; ++i) wall.parts.landmarks[i].num_observations = i % 2 == 0 ? 4 : 40;
@@ -76,7 +76,7 @@ TEST(MapAssembly, KeepsWhatIsWorthMost) {
 }
 
 TEST(MapAssembly, LandmarksBelowTheLeastWorthGo) {
-  Wall wall(600);
+  WallMap wall(600);
   for (std::uint32_t i = 0; i < 600; ++i) wall.parts.worth.push_back(i < 300 ? 1.0F : 2.0F);
   MapBuildOptions options;
   options.min_observations = 2;
@@ -87,7 +87,7 @@ TEST(MapAssembly, LandmarksBelowTheLeastWorthGo) {
 }
 
 TEST(MapAssembly, SetsBytesAsideForFurtherAppearances) {
-  const Wall wall(3000, 12, 2);
+  const WallMap wall(3000, 12, 2);
   MapBuildOptions options;
   options.max_bytes = 60000;
   const auto descriptors_of = [](const MapData& map) {
@@ -109,7 +109,7 @@ TEST(MapAssembly, SetsBytesAsideForFurtherAppearances) {
 }
 
 TEST(MapAssembly, FillsTheBudgetWhereAskedTo) {
-  const Wall wall(3000);
+  const WallMap wall(3000);
   MapBuildOptions options;
   options.max_bytes = 60000;
   options.max_bytes_per_landmark = 75;  // a cautious guess leaves much of the budget
@@ -125,7 +125,7 @@ TEST(MapAssembly, FillsTheBudgetWhereAskedTo) {
 }
 
 TEST(MapAssembly, SaysWhenTheBudgetIsTooSmall) {
-  const Wall wall(600);
+  const WallMap wall(600);
   MapBuildOptions options;
   options.max_bytes = 1000;
   const auto map = assemble_map(wall.parts, options, nullptr);

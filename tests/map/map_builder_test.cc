@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kWallM = 2.0;  // the wall is the plane z = 2 m of `map`
 
-RgbdCamera test_camera() {
+RgbdCamera wall_camera() {
   RgbdCamera camera;
   camera.name = "test";
   camera.color.width = 320;
@@ -90,7 +90,7 @@ std::vector<Rigid3> walk() {
 
 Result<MapData> build(const MapBuildOptions& options, MapBuildReport* report) {
   const Wall wall;
-  const RgbdCamera camera = test_camera();
+  const RgbdCamera camera = wall_camera();
   MapBuilder builder(camera, options);
   for (const Rigid3& T_map_camera : walk()) {
     const FrameBuffer frame = render(wall, camera, T_map_camera);
@@ -137,7 +137,7 @@ TEST(MapBuilder, KeyframesCoverAllLandmarks) {
       ++times[i];
       // Really in front of that keyframe.
       const Eigen::Vector3d p = keyframe.T_map_camera.inverse() * map.value().landmarks[i].position_m.cast<double>();
-      const Eigen::Vector2d pixel = test_camera().color.project(p);
+      const Eigen::Vector2d pixel = wall_camera().color.project(p);
       EXPECT_GE(pixel.x(), -15);
       EXPECT_LE(pixel.x(), 335);
     }
@@ -180,7 +180,7 @@ TEST(MapBuilder, ObeysTheByteBudget) {
 
 TEST(MapBuilder, RefusesFramesThatDoNotFit) {
   const Wall wall;
-  const RgbdCamera camera = test_camera();
+  const RgbdCamera camera = wall_camera();
   MapBuilder builder(camera, test_options());
   FrameBuffer frame = render(wall, camera, {});
   Rigid3 not_finite;
@@ -198,7 +198,7 @@ TEST(MapBuilder, RefusesFramesThatDoNotFit) {
 }
 
 TEST(MapBuilder, NothingSeenIsAnError) {
-  MapBuilder builder(test_camera(), test_options());
+  MapBuilder builder(wall_camera(), test_options());
   EXPECT_EQ(builder.finish(nullptr).status().code(), ErrorCode::kInvalid);
   FrameBuffer blank;
   blank.gray.resize(320, 240);

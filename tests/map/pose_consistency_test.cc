@@ -9,7 +9,7 @@
 namespace camloc {
 namespace {
 
-RgbdCamera test_camera() {
+RgbdCamera wide_camera() {
   RgbdCamera camera;
   camera.color.width = 640;
   camera.color.height = 480;
@@ -32,7 +32,7 @@ PoseConsistencyEstimate estimate_with(double error_m, double error_rad) {
     points.emplace_back(x(random), y(random), z(random));
     descriptors.push_back({{random(), random(), random(), random()}});
   }
-  const RgbdCamera camera = test_camera();
+  const RgbdCamera camera = wide_camera();
   PoseConsistency consistency(camera, {});
   const auto noise3 = [&](double sigma) {
     return Eigen::Vector3d(sigma * Eigen::Vector3d(normal(random), normal(random), normal(random)));
@@ -76,7 +76,7 @@ TEST(PoseConsistency, FindsTheDisagreementOfAPair) {
 }
 
 TEST(PoseConsistency, IsUnknownWithoutPairs) {
-  const auto estimate = PoseConsistency(test_camera(), {}).estimate();
+  const auto estimate = PoseConsistency(wide_camera(), {}).estimate();
   EXPECT_EQ(estimate.num_pairs, 0U);
   EXPECT_EQ(estimate.sigma_m, 0.0);
 }

@@ -58,7 +58,7 @@ struct RoomOptions {
 };
 
 /// 6 x 4 x 2.5 m; walls x = 3, y = -2, y = 2.
-inline MapData make_room(const RoomOptions& options = {}) {
+inline MapData make_room_map(const RoomOptions& options = {}) {
   Random random(7);
   MapData map;
   map.name = "room";

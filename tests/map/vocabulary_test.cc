@@ -15,7 +15,7 @@ namespace {
 
 Descriptor random_descriptor(std::mt19937_64& random) { return {{random(), random(), random(), random()}}; }
 
-Descriptor flipped(const Descriptor& original, int num_bits, std::mt19937_64& random) {
+Descriptor with_flips(const Descriptor& original, int num_bits, std::mt19937_64& random) {
   Descriptor descriptor = original;
   for (int i = 0; i < num_bits; ++i) {
     const std::uint64_t bit = random() % 256;
@@ -28,7 +28,7 @@ TEST(Vocabulary, FindsPlantedClusters) {
   std::mt19937_64 random(3);
   std::vector<Descriptor> centres, descriptors;
   for (int c = 0; c < 70; ++c) centres.push_back(random_descriptor(random));
-  for (int i = 0; i < 70 * 40; ++i) descriptors.push_back(flipped(centres[static_cast<std::size_t>(i % 70)], 25, random));
+  for (int i = 0; i < 70 * 40; ++i) descriptors.push_back(with_flips(centres[static_cast<std::size_t>(i % 70)], 25, random));
   const auto words = train_vocabulary(descriptors, 70);
   std::vector<NearestDescriptor> nearest(centres.size());
   nearest_descriptors(centres, words, nearest.data());
@@ -80,7 +80,7 @@ TEST(InvertedFile, HoldsNormalizedTfIdf) {
   for (int i = 0; i < 4; ++i) map.words.push_back(random_descriptor(random));
   for (int i = 0; i < 4; ++i) {
     MapLandmark& landmark = map.landmarks.emplace_back();
-    landmark.descriptors.push_back(flipped(map.words[static_cast<std::size_t>(i == 3 ? 2 : i)], 5, random));
+    landmark.descriptors.push_back(with_flips(map.words[static_cast<std::size_t>(i == 3 ? 2 : i)], 5, random));
   }
   map.landmarks[0].descriptors.push_back(map.words[1]);
   map.keyframes.resize(3);

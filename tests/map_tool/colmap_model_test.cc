@@ -23,14 +23,14 @@ constexpr const char* kImages =
     "10.5 20.5 77 30 40 -1 600 400 5\n"
     "9 0.5 0.5 -0.5 0.5 1 2 3 7 c.png\n"
     "\n";
-constexpr const char* kPoints = "# comment\n5 1 2 3 10 20 30 0.5\n77 -1 0.5 4 255 0 1 1.25 3 0 9 2\n";
+constexpr const char* kPointLines = "# comment\n5 1 2 3 10 20 30 0.5\n77 -1 0.5 4 255 0 1 1.25 3 0 9 2\n";
 
 class ColmapModelTest : public ::testing::Test {
  protected:
   void SetUp() override {
     write("cameras.txt", kCameras);
     write("images.txt", kImages);
-    write("points3D.txt", kPoints);
+    write("points3D.txt", kPointLines);
   }
   void write(const char* name, const std::string& text) { testing::write_bytes(folder_.file(name), std::as_bytes(std::span(text))); }
   Result<ColmapModel> read() { return read_colmap_model(folder_.path().string()); }

@@ -106,14 +106,14 @@ TEST(ControlObservations, ErrorsNameFileLineAndField) {
   }
 }
 
-RgbdCamera test_camera() {
+RgbdCamera sighting_camera() {
   RgbdCamera camera;
   camera.color = camera.depth = {640, 480, 525, 525, 319.5, 239.5, LensModel::kPinhole, {}};
   return camera;
 }
 
 TEST(PixelMeasurement, DepthAndRayOfAFlatWall) {
-  const RgbdCamera camera = test_camera();
+  const RgbdCamera camera = sighting_camera();
   Image<std::uint16_t> depth;
   depth.resize(640, 480);
   std::fill(depth.pixels.begin(), depth.pixels.end(), std::uint16_t{2000});
@@ -138,7 +138,7 @@ TEST(PixelMeasurement, DepthAndRayOfAFlatWall) {
 TEST(PixelMeasurement, OnlyOfTheFrameAtHand) {
   const auto observations = parse_control_observations("A pixel 3 100 100\nA pixel 4 100 100\nB map 1 2 3\nC pixel 3 700 100\n", "seen.txt");
   ASSERT_TRUE(observations.is_ok());
-  const RgbdCamera camera = test_camera();
+  const RgbdCamera camera = sighting_camera();
   FrameBuffer frame;
   frame.sequence = 3;
   frame.depth.resize(640, 480);
@@ -154,7 +154,7 @@ TEST(PixelMeasurement, OnlyOfTheFrameAtHand) {
 TEST(PixelMeasurement, SigmaOfThePointIsHonest) {
   std::mt19937 rng(4);
   std::normal_distribution<double> normal;
-  const RgbdCamera camera = test_camera();
+  const RgbdCamera camera = sighting_camera();
   const Rigid3 T_map_camera = testing::random_pose(rng, 2);
   const ControlObservation pixel{"A", ObservationKind::kPixel, {}, 0, 3, 500, 100, 1.5, 1};
   const Eigen::Vector2d normalized = camera.color.undistort({500, 100});
@@ -192,7 +192,7 @@ TEST(ResolveObservations, TakesWhatTheSourcesGiveAndNamesTheRest) {
     if (pixel.frame == 12) return {ErrorCode::kNotFound, "no depth"};
     return PixelMeasurement{{0.5, 0.25}, 2, pixel.sigma};
   };
-  const ResolvedObservations resolved = resolve_observations(*observations, test_camera(), sources);
+  const ResolvedObservations resolved = resolve_observations(*observations, sighting_camera(), sources);
   ASSERT_EQ(resolved.sightings.size(), 3U);
   EXPECT_EQ(resolved.sightings[1].name, "B");
   EXPECT_EQ(resolved.sightings[1].p_map, Eigen::Vector3d(5, 5, 5));
@@ -202,8 +202,8 @@ TEST(ResolveObservations, TakesWhatTheSourcesGiveAndNamesTheRest) {
                                              "D, pixel (100.0, 100.0) of frame 12: no depth"};
   EXPECT_EQ(resolved.left_out, left_out);
   // Without any source only positions are left.
-  EXPECT_EQ(resolve_observations(*observations, test_camera(), {}).sightings.size(), 1U);
-  EXPECT_EQ(resolve_observations(*observations, test_camera(), {}).left_out.size(), 5U);
+  EXPECT_EQ(resolve_observations(*observations, sighting_camera(), {}).sightings.size(), 1U);
+  EXPECT_EQ(resolve_observations(*observations, sighting_camera(), {}).left_out.size(), 5U);
 }
 
 TEST(AverageSightings, WeighsAndShowsTheScatter) {

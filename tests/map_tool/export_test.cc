@@ -18,8 +18,7 @@
 namespace camloc::map_tool {
 namespace {
 
-using testing::make_room;
-using testing::TemporaryFolder;
+using testing::make_room_map;
 
 class ExportTest : public ::testing::Test {
  protected:
@@ -30,7 +29,7 @@ class ExportTest : public ::testing::Test {
     EXPECT_TRUE(map.is_ok()) << map.status().message();
     return std::move(map).value();
   }
-  TemporaryFolder folder_;
+  testing::TemporaryFolder folder_;
 };
 
 /// Rows of a binary little-endian PLY with one element, every property as a double.
@@ -81,7 +80,7 @@ PlyRows read_ply(const std::string& bytes) {
 }
 
 TEST_F(ExportTest, PlyHoldsEveryLandmark) {
-  const MapView map = open(make_room());
+  const MapView map = open(make_room_map());
   const PlyRows ply = read_ply(format_ply(map, {}));
   const std::vector<std::string> names = {"x", "y", "z", "nx", "ny", "nz", "red", "green", "blue", "num_observations", "position_sigma_m"};
   ASSERT_EQ(ply.names, names);
@@ -101,7 +100,7 @@ TEST_F(ExportTest, PlyHoldsEveryLandmark) {
 }
 
 TEST_F(ExportTest, PlyInSiteCoordinatesKeepsMillimetresFarFromTheOrigin) {
-  const MapView map = open(make_room({.has_wcs = true}));
+  const MapView map = open(make_room_map({.has_wcs = true}));
   ASSERT_TRUE(check_export(map, {.use_wcs = true}).is_ok());
   const PlyRows ply = read_ply(format_ply(map, {.use_wcs = true}));
   EXPECT_EQ(ply.types[0], "double");
@@ -115,14 +114,14 @@ TEST_F(ExportTest, PlyInSiteCoordinatesKeepsMillimetresFarFromTheOrigin) {
 }
 
 TEST_F(ExportTest, SiteCoordinatesNeedADatum) {
-  const MapView map = open(make_room());
+  const MapView map = open(make_room_map());
   const Status status = check_export(map, {.use_wcs = true});
   EXPECT_EQ(status.code(), ErrorCode::kInvalid);
   EXPECT_NE(status.message().find("georef"), std::string::npos);
 }
 
 TEST_F(ExportTest, ColorsFollowHeightOrObservations) {
-  const MapView map = open(make_room());
+  const MapView map = open(make_room_map());
   const PlyRows height = read_ply(format_ply(map, {})), seen = read_ply(format_ply(map, {.coloring = PointColoring::kObservations}));
   const auto highest = std::max_element(height.rows.begin(), height.rows.end(), [](const auto& a, const auto& b) { return a[2] < b[2]; });
   const auto lowest = std::min_element(height.rows.begin(), height.rows.end(), [](const auto& a, const auto& b) { return a[2] < b[2]; });
@@ -134,7 +133,7 @@ TEST_F(ExportTest, ColorsFollowHeightOrObservations) {
 }
 
 TEST_F(ExportTest, ColmapPointsProjectOntoTheirObservations) {
-  const MapView map = open(make_room());
+  const MapView map = open(make_room_map());
   const std::string folder = folder_.file("model");
   ASSERT_TRUE(write_colmap_model(make_colmap_model(map, {}), folder, "test").is_ok());
   const auto model = read_colmap_model(folder);
@@ -177,7 +176,7 @@ TEST_F(ExportTest, LensModelsHaveTheirColmapNames) {
 }
 
 TEST_F(ExportTest, TrajectoryReadsBackAsKeyframes) {
-  const MapView map = open(make_room({.has_wcs = true}));
+  const MapView map = open(make_room_map({.has_wcs = true}));
   for (const bool use_wcs : {false, true}) {
     const std::string text = format_tum(map, {.use_wcs = use_wcs});
     testing::write_bytes(folder_.file("t.tum"), std::as_bytes(std::span(text)));
@@ -195,7 +194,7 @@ TEST_F(ExportTest, TrajectoryReadsBackAsKeyframes) {
 }
 
 TEST_F(ExportTest, ANameOfTheMapCannotBreakAHeader) {
-  MapData data = make_room();
+  MapData data = make_room_map();
   data.name = "a\nend_header\nb";
   const MapView map = open(data);
   EXPECT_EQ(read_ply(format_ply(map, {})).rows.size(), 360U);
@@ -203,16 +202,16 @@ TEST_F(ExportTest, ANameOfTheMapCannotBreakAHeader) {
 
 TEST_F(ExportTest, UpIsAcrossTheImageRowsOfAMapThatLiesAskew) {
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.6, Eigen::Vector3d(1, 0.3, 0.1).normalized()));
-  MapData askew = make_room();
+  MapData askew = make_room_map();
   for (MapLandmark& landmark : askew.landmarks) landmark.position_m = (turn * landmark.position_m.cast<double>()).cast<float>();
   for (MapKeyframe& keyframe : askew.keyframes) keyframe.T_map_camera = Rigid3{turn, {0, 0, 0}} * keyframe.T_map_camera;
   EXPECT_LT((up_axis(open(askew)) - turn * Eigen::Vector3d::UnitZ()).norm(), 1e-3);
 }
 
 TEST_F(ExportTest, UpIsTheFlatAxisWhereCamerasDoNotTurnAndTheSitesZWhereThereIsOne) {
-  EXPECT_EQ(up_axis(open(make_room())), Eigen::Vector3d(0, 0, 1));
-  EXPECT_EQ(up_axis(open(make_room({.num_keyframes = 1}))), Eigen::Vector3d(0, 0, 1));
-  MapData turned = make_room();
+  EXPECT_EQ(up_axis(open(make_room_map())), Eigen::Vector3d(0, 0, 1));
+  EXPECT_EQ(up_axis(open(make_room_map({.num_keyframes = 1}))), Eigen::Vector3d(0, 0, 1));
+  MapData turned = make_room_map();
   turned.wcs.emplace();
   turned.wcs->T_wcs_map.rotation = Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX());
   const MapView map = open(turned);

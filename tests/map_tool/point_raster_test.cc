@@ -144,7 +144,7 @@ TEST(ValueRamp, GrowsEvenlyInLightness) {
   EXPECT_NEAR(lightness_of(kBlack), 0, 0.1);
 }
 
-class FitView : public testing::TestWithParam<double> {};
+class FitView : public ::testing::TestWithParam<double> {};
 
 TEST_P(FitView, TopViewFillsThePictureAlongTheLongSide) {
   const double yaw = GetParam();
@@ -192,7 +192,7 @@ TEST_P(FitView, PerspectiveViewFillsThePicture) {
   EXPECT_LT(project(view, {3, 4, 6}).y(), project(view, {3, 4, 5}).y());
 }
 
-INSTANTIATE_TEST_SUITE_P(Turned, FitView, testing::Values(0.0, 0.4, 1.2, -0.6, 3.0));
+INSTANTIATE_TEST_SUITE_P(Turned, FitView, ::testing::Values(0.0, 0.4, 1.2, -0.6, 3.0));
 
 TEST(FitViewBadInput, TakesNoPointsAndOnePoint) {
   const Eigen::Vector3d up = Eigen::Vector3d::UnitY();

@@ -7,7 +7,7 @@
 namespace camloc::map_tool {
 namespace {
 
-RgbdCamera test_camera() {
+RgbdCamera surface_camera() {
   RgbdCamera camera;
   camera.color.width = camera.depth.width = 160;
   camera.color.height = camera.depth.height = 120;
@@ -18,7 +18,7 @@ RgbdCamera test_camera() {
 }
 
 TEST(SurfaceSample, PointsLieOnTheSurface) {
-  const RgbdCamera camera = test_camera();
+  const RgbdCamera camera = surface_camera();
   Image<std::uint16_t> depth;
   depth.resize(160, 120);
   std::fill(depth.pixels.begin(), depth.pixels.end(), std::uint16_t{2000});
@@ -35,7 +35,7 @@ TEST(SurfaceSample, PointsLieOnTheSurface) {
 }
 
 TEST(SurfaceSample, HolesAreLeftOut) {
-  const RgbdCamera camera = test_camera();
+  const RgbdCamera camera = surface_camera();
   Image<std::uint16_t> depth;
   depth.resize(160, 120);
   for (int y = 0; y < 120; ++y) {
@@ -49,7 +49,7 @@ TEST(SurfaceSample, HolesAreLeftOut) {
 }
 
 TEST(SurfaceSample, PointsAreInTheFrameOfTheColourCamera) {
-  RgbdCamera camera = test_camera();
+  RgbdCamera camera = surface_camera();
   camera.is_depth_registered = false;
   camera.T_color_depth = {exp_so3({0, 0.1, 0}), {0.025, 0, 0.01}};
   Image<std::uint16_t> depth;

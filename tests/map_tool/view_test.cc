@@ -18,7 +18,7 @@
 namespace camloc::map_tool {
 namespace {
 
-using testing::make_room;
+using testing::make_room_map;
 
 class ViewTest : public ::testing::Test {
  protected:
@@ -77,7 +77,7 @@ MapPicture picture_of(const MapView& map, const std::vector<std::uint32_t>& weak
 constexpr int kMapPx = 900;  // of a coverage sheet 1600 px wide; right of it is the list
 
 TEST_F(ViewTest, CoverageShowsWhereItIsWeak) {
-  const MapView map = open(make_room());
+  const MapView map = open(make_room_map());
   const ColorImage fine = draw_map(picture_of(map, {}), MapPanel::kCoverage, 1600);
   EXPECT_EQ(fine.width, 1600);
   EXPECT_GT(find_color(fine, color_of(FixOutlook::kLikely), kMapPx).count, 200);
@@ -94,7 +94,7 @@ TEST_F(ViewTest, CoverageShowsWhereItIsWeak) {
 }
 
 TEST_F(ViewTest, AWedgeOpensTheWayTheCameraLooks) {
-  MapData room = make_room({.num_keyframes = 2});
+  MapData room = make_room_map({.num_keyframes = 2});
   room.keyframes[0].T_map_camera = testing::looking({0, 0, 1.5}, {1, 0, 0});
   room.keyframes[1].T_map_camera = testing::looking({0, 0, 1.5}, {0, 1, 0});
   const MapView map = open(room);
@@ -114,7 +114,7 @@ TEST_F(ViewTest, ColorsCanBeToldApartInGrey) {
 }
 
 TEST_F(ViewTest, EveryPanelIsDrawnInEveryWidth) {
-  const MapView map = open(make_room());
+  const MapView map = open(make_room_map());
   for (const MapPanel panel : {MapPanel::kTop, MapPanel::kPerspective, MapPanel::kCoverage, MapPanel::kAll}) {
     for (const int width : {400, 801, 1600}) {
       const ColorImage image = draw_map(picture_of(map, {0, 4, 8}), panel, width);
@@ -126,7 +126,7 @@ TEST_F(ViewTest, EveryPanelIsDrawnInEveryWidth) {
 }
 
 TEST_F(ViewTest, AFarLandmarkDoesNotShrinkTheRoom) {
-  MapData room = make_room();
+  MapData room = make_room_map();
   const Blob before = find_color(draw_map(picture_of(open(room), {}), MapPanel::kCoverage, 1600), color_of(FixOutlook::kLikely), kMapPx);
   room.landmarks[0].position_m = {400, 300, 1};
   const Blob after = find_color(draw_map(picture_of(open(room), {}), MapPanel::kCoverage, 1600), color_of(FixOutlook::kLikely), kMapPx);
@@ -135,7 +135,7 @@ TEST_F(ViewTest, AFarLandmarkDoesNotShrinkTheRoom) {
 }
 
 TEST_F(ViewTest, AWalkIsDrawnAndItsBareStretchesStandOut) {
-  const MapView map = open(make_room());
+  const MapView map = open(make_room_map());
   MapPicture picture = picture_of(map, {});
   for (int i = 0; i <= 20; ++i) picture.trajectory.push_back({Eigen::Quaterniond::Identity(), {-1 + 0.08 * i, 0, 1.5}});
   const ColorImage near = draw_map(picture, MapPanel::kCoverage, 1600);
@@ -147,7 +147,7 @@ TEST_F(ViewTest, AWalkIsDrawnAndItsBareStretchesStandOut) {
 }
 
 TEST_F(ViewTest, NeighboursAreOneWeakPlaceAndTheWorstComesFirst) {
-  const MapView map = open(make_room());
+  const MapView map = open(make_room_map());
   std::vector<KeyframeLocalizability> places(9);
   for (const std::uint32_t k : {0U, 1U, 8U}) {
     places[k].outlook = FixOutlook::kScanAgain;
@@ -169,7 +169,7 @@ TEST_F(ViewTest, NeighboursAreOneWeakPlaceAndTheWorstComesFirst) {
 }
 
 TEST_F(ViewTest, PositionsAreOfTheSiteWhereTheMapHasOne) {
-  const MapView map = open(make_room({.has_wcs = true}));
+  const MapView map = open(make_room_map({.has_wcs = true}));
   std::vector<KeyframeLocalizability> places(9);
   places[0].outlook = FixOutlook::kLookAlike;
   places[0].rival = RivalPlace{8, 0.4, 50, 45};
@@ -181,7 +181,7 @@ TEST_F(ViewTest, PositionsAreOfTheSiteWhereTheMapHasOne) {
 }
 
 TEST_F(ViewTest, CommandsWriteTheirFilesOrSayWhyNot) {
-  open(make_room());
+  open(make_room_map());
   const std::string map = folder_.file("m.cmap"), png = folder_.file("m.png"), ply = folder_.file("m.ply"), tum = folder_.file("m.tum"), model = folder_.file("model");
   EXPECT_EQ(run({"camloc-map", "export", map.c_str(), "--ply", ply.c_str(), "--tum", tum.c_str(), "--colmap", model.c_str()}), 0);
   EXPECT_TRUE(read_tum_trajectory(tum).is_ok());

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class Dataset : public testing::Test {
+class Dataset : public ::testing::Test {
  protected:
   void SetUp() override {
     std::string pattern = (fs::temp_directory_path() / "camloc_sim_test_XXXXXX").string();

@@ -15,7 +15,7 @@
 namespace camloc::sim {
 namespace {
 
-class Walks : public testing::TestWithParam<std::tuple<SceneKind, std::uint32_t>> {
+class Walks : public ::testing::TestWithParam<std::tuple<SceneKind, std::uint32_t>> {
  protected:
   World world_ = make_world({std::get<0>(GetParam()), 1, std::get<1>(GetParam())});
 };
@@ -60,7 +60,7 @@ TEST_P(Walks, NobodyWalksThroughAWall) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Walks,
-                         testing::Combine(testing::Values(SceneKind::kSmall, SceneKind::kBuilding), testing::Values(1U, 2U)));
+                         ::testing::Combine(::testing::Values(SceneKind::kSmall, SceneKind::kBuilding), ::testing::Values(1U, 2U)));
 
 TEST(Building, TheLoopIsWalkedAllAround) {
   const World world = make_world({SceneKind::kBuilding, 1, 1});

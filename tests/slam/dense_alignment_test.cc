@@ -18,7 +18,7 @@ using testing::looking;
 
 const Eigen::Vector3d kLow(-3, -2.5, 0), kHigh(3, 2.5, 2.8);
 
-struct Scenery {
+struct AlignedScenery {
   testing::World world;
   testing::Viewer viewer{world};
   BoxRenderer renderer{viewer.camera(), kLow, kHigh};
@@ -43,7 +43,7 @@ Vector6d change_of(double x, double y, double z, double rx, double ry, double rz
 }
 
 TEST(DenseAlignment, FindsTheMotionInACorner) {
-  Scenery scenery;
+  AlignedScenery scenery;
   DenseAlignment found;
   const Rigid3 a = looking({1.2, 0.9, 1.3}, 0.7, -0.2), b = looking({1.25, 0.93, 1.28}, 0.78, -0.22);
   const Vector6d error = scenery.error(a, b, change_of(0.02, -0.015, 0.01, 0.015, -0.02, 0.01), &found);
@@ -54,7 +54,7 @@ TEST(DenseAlignment, FindsTheMotionInACorner) {
 }
 
 TEST(DenseAlignment, AFaintTextureSaysWhereAlongTheWall) {
-  Scenery scenery;
+  AlignedScenery scenery;
   scenery.renderer.vignetting = 0.35;   // ten times what the texture is
   DenseAlignment found;
   const Rigid3 a = looking({1.8, 0.2, 1.4}, 0.0), b = looking({1.82, 0.25, 1.4}, 0.09, -0.02);
@@ -66,7 +66,7 @@ TEST(DenseAlignment, AFaintTextureSaysWhereAlongTheWall) {
 
 // In front of a plane without texture depth says how far and how tilted; the rest stays as predicted, and as uncertain.
 TEST(DenseAlignment, ABareWallLeavesThePrediction) {
-  Scenery scenery;
+  AlignedScenery scenery;
   scenery.renderer.contrast = 0;
   DenseAlignment found;
   const Rigid3 a = looking({1.8, 0.2, 1.4}, 0.0), b = looking({1.82, 0.25, 1.4}, 0.05);
@@ -84,7 +84,7 @@ TEST(DenseAlignment, ABareWallLeavesThePrediction) {
 }
 
 TEST(DenseAlignment, RefusesWhatIsNotTheSameOrFarFromThePrediction) {
-  Scenery scenery;
+  AlignedScenery scenery;
   DenseAlignment found;
   const Rigid3 a = looking({1.2, 0.9, 1.3}, 0.7, -0.2);
   (void)scenery.error(a, looking({-1.0, -1.2, 1.4}, -2.2, 0.1), change_of(0, 0, 0, 0, 0, 0), &found);

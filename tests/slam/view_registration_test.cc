@@ -17,14 +17,14 @@ using testing::Viewer;
 using testing::World;
 
 /// A map of keyframes at true poses.
-struct Fixture {
+struct SeenRoom {
   World world = testing::make_room();
   Viewer viewer{world};
   SlamMap map{viewer.camera(), 1.2F, 8};
   ViewRegistration registration{viewer.camera(), 1.2F, RegistrationOptions{.max_features = 600}};
   LandmarkSet landmarks;
 
-  Fixture() {
+  SeenRoom() {
     std::vector<std::uint32_t> keyframes;
     for (std::uint64_t k = 0; k < 4; ++k) {
       const Rigid3 T = looking({0.1 * static_cast<double>(k), 0, 1.4}, 0.15 * static_cast<double>(k) - 0.2);
@@ -53,19 +53,19 @@ void expect_near_truth(const Registration& found) {
 }
 
 TEST(ViewRegistration, FindsThePoseWithAPrediction) {
-  Fixture f;
+  SeenRoom f;
   const ViewFeatures view = f.viewer.see(10, kTruth);
   const Rigid3 predicted{kTruth.rotation * exp_so3({0.01, -0.012, 0.005}), kTruth.translation + Eigen::Vector3d(0.03, -0.02, 0.02)};
   expect_near_truth(f.registration.guided(view, &f.landmarks, predicted, 14, 1));
 }
 
 TEST(ViewRegistration, FindsThePoseFromDescriptorsAlone) {
-  Fixture f;
+  SeenRoom f;
   expect_near_truth(f.registration.unguided(f.viewer.see(10, kTruth), &f.landmarks, 1));
 }
 
 TEST(ViewRegistration, InliersShowTheLandmarksTheyName) {
-  Fixture f;
+  SeenRoom f;
   const ViewFeatures view = f.viewer.see(10, kTruth);
   const Registration found = f.registration.unguided(view, &f.landmarks, 1);
   std::size_t num_right = 0;
@@ -77,7 +77,7 @@ TEST(ViewRegistration, InliersShowTheLandmarksTheyName) {
 }
 
 TEST(ViewRegistration, AWrongPredictionIsRefusedAndNotFollowed) {
-  Fixture f;
+  SeenRoom f;
   const ViewFeatures view = f.viewer.see(10, kTruth);
   const Registration found = f.registration.guided(view, &f.landmarks, looking({0.1, 0, 1.4}, 0.9), 14, 1);
   EXPECT_FALSE(found.is_found);
@@ -85,7 +85,7 @@ TEST(ViewRegistration, AWrongPredictionIsRefusedAndNotFollowed) {
 }
 
 TEST(ViewRegistration, NonsenseIsRefused) {
-  Fixture f;
+  SeenRoom f;
   // Another room, empty views, landmarks of nothing.
   const World other = testing::make_room(50);
   Viewer elsewhere(other);
@@ -101,7 +101,7 @@ TEST(ViewRegistration, NonsenseIsRefused) {
 }
 
 TEST(ViewRegistration, DepthMakesThePoseBetter) {
-  Fixture f;
+  SeenRoom f;
   ViewRegistration without(f.viewer.camera(), 1.2F, RegistrationOptions{.use_depth = false, .max_features = 600});
   double with_m = 0, without_m = 0;
   for (std::uint64_t i = 0; i < 25; ++i) {
@@ -113,7 +113,7 @@ TEST(ViewRegistration, DepthMakesThePoseBetter) {
 }
 
 TEST(ViewRegistration, TheSameInputGivesTheSameBits) {
-  Fixture f, g;
+  SeenRoom f, g;
   const ViewFeatures view = f.viewer.see(10, kTruth);
   (void)g.registration.unguided(g.viewer.see(11, looking({0, 0, 1.4}, -0.2)), &g.landmarks, 9);   // what came before does not matter
   const Registration a = f.registration.unguided(view, &f.landmarks, 3), b = g.registration.unguided(view, &g.landmarks, 3);
@@ -123,7 +123,7 @@ TEST(ViewRegistration, TheSameInputGivesTheSameBits) {
 }
 
 TEST(ViewRegistration, WrongDepthsLowerTheAgreement) {
-  Fixture f;
+  SeenRoom f;
   ViewFeatures view = f.viewer.see(10, kTruth);
   for (std::size_t i = 0; i < view.size(); i += 2) view.depth_m[i] *= 0.7F;
   const Registration found = f.registration.unguided(view, &f.landmarks, 1);

@@ -19,12 +19,12 @@ TEST(EvalCommandTest, CountsAllFramesThatWereTried) {
   const CommandOutput output = run_command(add_eval_command, {"eval", "--estimate", folder.write("e.tum", kEstimate), "--reference",
                                                               folder.write("r.tum", kReference), "--png", png, "--json"});
   ASSERT_EQ(output.exit_code, 0) << output.err;
-  const auto json = nlohmann::json::parse(output.out);
-  EXPECT_EQ(json["frames"], 4);
-  EXPECT_EQ(json["localized"], 2);
-  EXPECT_EQ(json["misleading"], 1);
-  EXPECT_DOUBLE_EQ(json["within"]["2cm_2deg"], 0.25);
-  EXPECT_NEAR(json["translation_m"]["max"].get<double>(), 0.5, 1e-9);
+  const auto report = nlohmann::json::parse(output.out);
+  EXPECT_EQ(report["frames"], 4);
+  EXPECT_EQ(report["localized"], 2);
+  EXPECT_EQ(report["misleading"], 1);
+  EXPECT_DOUBLE_EQ(report["within"]["2cm_2deg"], 0.25);
+  EXPECT_NEAR(report["translation_m"]["max"].get<double>(), 0.5, 1e-9);
   EXPECT_TRUE(std::filesystem::exists(png));
 }
 

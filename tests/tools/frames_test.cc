@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-json example() { return json::parse(run_command(add_frames_command, {"frames", "--json"}).out); }
+json frames_example() { return json::parse(run_command(add_frames_command, {"frames", "--json"}).out); }
 
 void expect_near(const json& values, const std::vector<double>& expected) {
   ASSERT_EQ(values.size(), expected.size());
@@ -26,22 +26,22 @@ TEST(FramesTest, PointInCameraIsWhatTrigonometrySays) {
   const double yaw_rad = std::acos(-1.0) / 9;
   EXPECT_NEAR(kAhead, 3 * std::cos(yaw_rad) + 1.4 * std::sin(yaw_rad), 1e-6);
   EXPECT_NEAR(kLeft, -3 * std::sin(yaw_rad) + 1.4 * std::cos(yaw_rad), 1e-6);
-  expect_near(example()["p_camera"], {-kLeft, -kAbove, kAhead});
+  expect_near(frames_example()["p_camera"], {-kLeft, -kAbove, kAhead});
 }
 
 TEST(FramesTest, PixelFollowsThePinholeEquation) {
-  expect_near(example()["pixel"], {319.5 - 525 * kLeft / kAhead, 239.5 - 525 * kAbove / kAhead});
+  expect_near(frames_example()["pixel"], {319.5 - 525 * kLeft / kAhead, 239.5 - 525 * kAbove / kAhead});
 }
 
 TEST(FramesTest, TranslationIsTheCameraCentre) {
-  const json T = example()["T_map_camera"];
+  const json T = frames_example()["T_map_camera"];
   EXPECT_NEAR(T[0][3].get<double>(), 2.0, 1e-12);
   EXPECT_NEAR(T[1][3].get<double>(), 1.0, 1e-12);
   EXPECT_NEAR(T[2][3].get<double>(), 1.6, 1e-12);
 }
 
 TEST(FramesTest, EveryConventionNamesTheSamePoint) {
-  const json conventions = example()["conventions"];
+  const json conventions = frames_example()["conventions"];
   expect_near(conventions["ROS body (REP-103)"]["p"], {kAhead, kLeft, kAbove});
   expect_near(conventions["OpenGL, ARKit, WebXR eye"]["p"], {-kLeft, kAbove, -kAhead});
   expect_near(conventions["Unity, Irrlicht"]["p"], {-kLeft, kAbove, kAhead});

@@ -10,7 +10,7 @@
 namespace camloc::tools {
 namespace {
 
-std::vector<std::string> lines_of(const std::string& text) {
+std::vector<std::string> rows_of(const std::string& text) {
   std::istringstream stream(text);
   std::vector<std::string> lines;
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
@@ -37,7 +37,7 @@ Rigid3 camera_at(double x, double y, const Eigen::Vector3d& forward) {
 }
 
 TEST(MapSketchTest, KeepsItsSizeAndShowsTheCamera) {
-  const auto lines = lines_of(room(72, 18).draw(camera_at(6, 3.5, {0, 1, 0})));
+  const auto lines = rows_of(room(72, 18).draw(camera_at(6, 3.5, {0, 1, 0})));
   ASSERT_EQ(lines.size(), 19U);  // 4 m in rows of 2 x 4/34 m, and the scale
   for (std::size_t i = 0; i + 1 < lines.size(); ++i) EXPECT_LE(lines[i].size(), 74U);
   EXPECT_EQ(lines[0].find("  ...."), 0U) << lines[0];
@@ -51,7 +51,7 @@ TEST(MapSketchTest, KeepsItsSizeAndShowsTheCamera) {
 TEST(MapSketchTest, ArrowsPointWhereTheCameraLooks) {
   const MapSketch sketch = room(40, 10);
   for (const auto& [forward, arrow] : {std::pair<Eigen::Vector3d, char>{{1, 0, 0}, '>'}, {{-1, 0, 0}, '<'}, {{0, -1, 0}, 'v'}, {{0, 0, -1}, '+'}}) {
-    const auto lines = lines_of(sketch.draw(camera_at(4, 1, forward)));
+    const auto lines = rows_of(sketch.draw(camera_at(4, 1, forward)));
     bool is_there = false;
     for (std::size_t i = 0; i + 1 < lines.size(); ++i) is_there = is_there || lines[i].find(arrow) != std::string::npos;
     EXPECT_TRUE(is_there) << arrow;
