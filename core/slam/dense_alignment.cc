@@ -19,14 +19,15 @@ constexpr double kKernelSigmas = 2;               // Huber
 constexpr double kDepthInlierSigmas = 4;
 constexpr double kMaxDepthStepShare = 0.05;       // a cell beside one so much nearer or farther is at an edge
 constexpr double kDepthSigmaShare = 0.5, kDepthSigmaM = 0.001;   // an average of cells is better than a pixel, but shares its bias
-constexpr double kIndependentShare = 0.03;        // of cells: neighbours share their errors (the sigmas fit the synthetic building's truth)
+// Of cells: neighbours share their errors, in grey more than in depth (the sigmas fit the synthetic building's truth).
+constexpr double kIndependentGreyShare = 0.01, kIndependentDepthShare = 0.2;
 constexpr double kSlopeNoise = 6;                 // three times the square of a slope that is nothing but noise, in terms of the residuals'
 constexpr int kSlowRadius = 5;                    // cells
-constexpr double kSettled = 1e-5;                 // metres and radians
+constexpr double kSettled = 3e-5;                 // metres and radians
 
-/// Grey level and depth between four cells, with their slopes per cell.
+/// Grey level and inverse depth (1 / m, linear over the image of a plane) between four cells, with their slopes per cell.
 struct Surroundings {
-  double grey, grey_x, grey_y, depth_m, depth_x, depth_y;
+  double grey, grey_x, grey_y, inverse, inverse_x, inverse_y;
 };
 
 // What varies slowly over an image is the lens's vignetting and the exposure, which go with the camera, more often than the wall.
@@ -54,11 +55,11 @@ void remove_slow_changes(const ViewThumbnail& view, std::vector<float>* grey) {
   }
 }
 
-// Slopes from one cell to the next are mostly noise, and noise would pass for structure: a plane through 5 x 5 cells instead. NaN
+// Slopes from one cell to the next are mostly noise, and noise would pass for structure: a plane through 7 x 7 cells instead. NaN
 // at an edge and beside a cell without depth.
-void fit_slopes(const ViewThumbnail& view, std::vector<Eigen::Vector2f>* slopes) {
-  constexpr int kRadius = 2;
-  constexpr float kSumOfSquares = 5 * (4 + 1 + 0 + 1 + 4);
+void fit_slopes(const ViewThumbnail& view, const std::vector<float>& inverse, std::vector<Eigen::Vector2f>* slopes) {
+  constexpr int kRadius = 3;
+  constexpr float kSumOfSquares = 7 * (9 + 4 + 1 + 0 + 1 + 4 + 9);
   slopes->assign(view.depth.size(), Eigen::Vector2f::Constant(std::numeric_limits<float>::quiet_NaN()));
   for (int y = kRadius; y < view.height - kRadius; ++y) {
     for (int x = kRadius; x < view.width - kRadius; ++x) {
@@ -69,17 +70,23 @@ void fit_slopes(const ViewThumbnail& view, std::vector<Eigen::Vector2f>* slopes)
           const std::uint16_t depth = view.depth[view.index(x + dx, y + dy)];
           nearest = std::min(nearest, depth);
           farthest = std::max(farthest, depth);
-          sum += static_cast<float>(depth) * Eigen::Vector2f(static_cast<float>(dx), static_cast<float>(dy));
+          sum += inverse[view.index(x + dx, y + dy)] * Eigen::Vector2f(static_cast<float>(dx), static_cast<float>(dy));
         }
       }
-      if (nearest > 0 && farthest - nearest <= kMaxDepthStepShare * 5 * nearest)
-        (*slopes)[view.index(x, y)] = ViewThumbnail::kDepthUnitM / kSumOfSquares * sum;
+      if (nearest > 0 && farthest - nearest <= kMaxDepthStepShare * 7 * nearest)
+        (*slopes)[view.index(x, y)] = sum / kSumOfSquares;
     }
   }
 }
 
-std::optional<Surroundings> look(const ViewThumbnail& view, const std::vector<float>& grey, const std::vector<Eigen::Vector2f>& slopes, double x,
-                                 double y) {
+void invert_depth(const ViewThumbnail& view, std::vector<float>* inverse) {
+  inverse->resize(view.depth.size());
+  for (std::size_t i = 0; i < view.depth.size(); ++i)
+    (*inverse)[i] = view.depth[i] == 0 ? 0 : 1 / (ViewThumbnail::kDepthUnitM * static_cast<float>(view.depth[i]));
+}
+
+std::optional<Surroundings> look(const ViewThumbnail& view, const std::vector<float>& grey, const std::vector<float>& inverse,
+                                 const std::vector<Eigen::Vector2f>& slopes, double x, double y) {
   const double column = std::floor(x), row = std::floor(y);
   if (!(column >= 0 && row >= 0 && column < view.width - 1 && row < view.height - 1)) return std::nullopt;
   const std::size_t i = view.index(static_cast<int>(column), static_cast<int>(row));
@@ -95,9 +102,9 @@ std::optional<Surroundings> look(const ViewThumbnail& view, const std::vector<fl
   s.grey = mix(grey);
   s.grey_x = (1 - b) * static_cast<double>(grey[at[1]] - grey[at[0]]) + b * static_cast<double>(grey[at[3]] - grey[at[2]]);
   s.grey_y = (1 - a) * static_cast<double>(grey[at[2]] - grey[at[0]]) + a * static_cast<double>(grey[at[3]] - grey[at[1]]);
-  s.depth_m = static_cast<double>(ViewThumbnail::kDepthUnitM) * mix(view.depth);
-  s.depth_x = static_cast<double>(slope.x());
-  s.depth_y = static_cast<double>(slope.y());
+  s.inverse = mix(inverse);
+  s.inverse_x = static_cast<double>(slope.x());
+  s.inverse_y = static_cast<double>(slope.y());
   return s;
 }
 
@@ -144,7 +151,8 @@ DenseAligner::Equations DenseAligner::linearize(const ViewThumbnail& a, const Vi
     const Eigen::Vector3d p = R * point.p_b + T_a_b.translation;
     if (p.z() < 0.1 || std::abs(p.x()) > 3 * p.z() || std::abs(p.y()) > 3 * p.z()) continue;
     const Eigen::Vector2d pixel = camera_.color.project(p);
-    const auto seen = look(a, grey_a_, slopes_a_, (pixel.x() + 0.5) / a.cell_px - 0.5, (pixel.y() + 0.5) / a.cell_px - 0.5);
+    const Eigen::Vector2d cell = (pixel.array() + 0.5) / a.cell_px - 0.5;
+    const auto seen = look(a, grey_a_, inverse_a_, slopes_a_, cell.x(), cell.y());
     if (!seen) continue;
     Eigen::Matrix<double, 3, 6> dp;   // R [I, -[p_b]x]
     dp.leftCols<3>() = R;
@@ -153,11 +161,12 @@ DenseAligner::Equations DenseAligner::linearize(const ViewThumbnail& a, const Vi
     const Vector6d dv = (fy / p.z() * (dp.row(1) - p.y() / p.z() * dp.row(2))).transpose();
     Pair& pair = pairs_.emplace_back();
     pair.grey = seen->grey - point.grey;
-    pair.depth = seen->depth_m - p.z();
-    pair.depth_sigma = kDepthSigmaShare * camera_.depth_noise.sigma_m(p.z()) + kDepthSigmaM;
+    const double inverse = 1 / p.z();
+    pair.depth = seen->inverse - inverse;
+    pair.depth_sigma = inverse * inverse * (kDepthSigmaShare * camera_.depth_noise.sigma_m(p.z()) + kDepthSigmaM);
     pair.slope_squared = seen->grey_x * seen->grey_x + seen->grey_y * seen->grey_y;
     pair.J_grey = seen->grey_x * du + seen->grey_y * dv;
-    pair.J_depth = seen->depth_x * du + seen->depth_y * dv - dp.row(2).transpose();
+    pair.J_depth = seen->inverse_x * du + seen->inverse_y * dv + inverse * inverse * dp.row(2).transpose();
     grey_mean += pair.grey;
   }
   Equations equations;
@@ -173,12 +182,12 @@ DenseAligner::Equations DenseAligner::linearize(const ViewThumbnail& a, const Vi
     const double grey = (pair.grey - grey_mean) / grey_sigma, depth = pair.depth / pair.depth_sigma;
     if (std::abs(depth) > kDepthInlierSigmas) continue;   // another surface
     ++num_inliers;
-    const double grey_weight = huber_weight(grey) / (grey_sigma * grey_sigma) * share_of_signal(pair.slope_squared, noise_slope), depth_weight = huber_weight(depth) / (pair.depth_sigma * pair.depth_sigma);
+    const double grey_weight = kIndependentGreyShare * huber_weight(grey) / (grey_sigma * grey_sigma) *
+                               share_of_signal(pair.slope_squared, noise_slope);
+    const double depth_weight = kIndependentDepthShare * huber_weight(depth) / (pair.depth_sigma * pair.depth_sigma);
     equations.H += grey_weight * pair.J_grey * pair.J_grey.transpose() + depth_weight * pair.J_depth * pair.J_depth.transpose();
     equations.g += grey_weight * (pair.grey - grey_mean) * pair.J_grey + depth_weight * pair.depth * pair.J_depth;
   }
-  equations.H *= kIndependentShare;
-  equations.g *= kIndependentShare;
   equations.overlap = static_cast<double>(pairs_.size()) / static_cast<double>(points_.size());
   equations.inlier_share = static_cast<double>(num_inliers) / static_cast<double>(pairs_.size());
   return equations;
@@ -189,7 +198,8 @@ DenseAlignment DenseAligner::align(const ViewThumbnail& a, const ViewThumbnail& 
   if (a.empty() || b.empty()) return result;
   prepare(b);
   remove_slow_changes(a, &grey_a_);
-  fit_slopes(a, &slopes_a_);
+  invert_depth(a, &inverse_a_);
+  fit_slopes(a, inverse_a_, &slopes_a_);
   const Matrix6d prior = rotate_covariance(T_a_b_predicted.rotation.conjugate(), covariance).inverse();
   result.T_a_b = T_a_b_predicted;
   Equations equations;

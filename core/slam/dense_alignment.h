@@ -54,12 +54,13 @@ class DenseAligner {
   };
   struct Pair {
     Vector6d J_grey, J_depth;
-    double grey, depth, depth_sigma, slope_squared;
+    double grey, depth, depth_sigma, slope_squared;   ///< depth: inverse, 1 / m
   };
   RgbdCamera camera_;
   DenseAlignmentOptions options_;
   std::vector<float> grey_a_, grey_b_;   ///< without slow changes
-  std::vector<Eigen::Vector2f> slopes_a_;  ///< of the depth, metres a cell
+  std::vector<float> inverse_a_;           ///< of the depth, 1 / m
+  std::vector<Eigen::Vector2f> slopes_a_;  ///< of that, a cell
   std::vector<Point> points_;
   std::vector<Pair> pairs_;
 };

@@ -9,20 +9,23 @@
 namespace camloc {
 namespace {
 
-constexpr float kSameSurfaceShare = 1.03F, kSameSurfaceM = 0.01F;   // what still belongs to the nearest surface in a cell
+// What still belongs to the nearest surface in a cell; a floor some metres ahead does.
+constexpr float kSameSurfaceShare = 1.08F, kSameSurfaceM = 0.01F;
 constexpr std::uint32_t kMinSamples = 2;
 
 }  // namespace
 
 ThumbnailMaker::ThumbnailMaker(const RgbdCamera& camera) : camera_(camera), depth_rays_(camera.depth) {}
 
-// Every second depth pixel along both axes, every fourth where each has to be projected.
+// Half of the columns and rows, those that lie symmetrically in cells of four and eight pixels: the mean of the samples is then
+// that of the cell. Every fourth where each has to be projected.
 void ThumbnailMaker::sample_depth(ImageView<std::uint16_t> depth, const ViewThumbnail& thumbnail) {
   samples_.clear();
-  const int step = camera_.is_depth_registered ? 2 : 4;
   const Eigen::Matrix3d R_color_depth = camera_.T_color_depth.rotation.toRotationMatrix();
-  for (int y = step / 2; y < depth.height; y += step) {
-    for (int x = step / 2; x < depth.width; x += step) {
+  const auto next = [&](int i) { return camera_.is_depth_registered ? i + (i % 4 == 0 ? 3 : 1) : i + 4; };
+  const int first = camera_.is_depth_registered ? 0 : 2;
+  for (int y = first; y < depth.height; y = next(y)) {
+    for (int x = first; x < depth.width; x = next(x)) {
       float z = camera_.depth_m(depth.at(x, y));
       if (z <= 0) continue;
       Eigen::Vector2d pixel(x, y);
@@ -60,18 +63,18 @@ ViewThumbnail ThumbnailMaker::make(const Frame& frame) {
   }
   sample_depth(frame.depth, thumbnail);
   nearest_m_.assign(count, std::numeric_limits<float>::infinity());
-  sum_m_.assign(count, 0);
+  sum_per_m_.assign(count, 0);
   counts_.assign(count, 0);
   for (const Sample& s : samples_) nearest_m_[s.cell] = std::min(nearest_m_[s.cell], s.z_m);
   for (const Sample& s : samples_) {
     if (s.z_m > kSameSurfaceShare * nearest_m_[s.cell] + kSameSurfaceM) continue;
-    sum_m_[s.cell] += s.z_m;
+    sum_per_m_[s.cell] += 1 / s.z_m;
     ++counts_[s.cell];
   }
   thumbnail.depth.assign(count, 0);
   for (std::size_t i = 0; i < count; ++i) {
     if (counts_[i] < kMinSamples) continue;
-    const float units = sum_m_[i] / static_cast<float>(counts_[i]) / ViewThumbnail::kDepthUnitM;
+    const float units = static_cast<float>(counts_[i]) / sum_per_m_[i] / ViewThumbnail::kDepthUnitM;
     if (units < 65535) thumbnail.depth[i] = static_cast<std::uint16_t>(std::lround(units));
   }
   return thumbnail;

@@ -19,7 +19,9 @@ struct ViewThumbnail {
 
   int width = 0, height = 0, cell_px = 0;                 ///< cells, and pixels of the colour image along the side of one
   std::vector<std::uint16_t> grey;                        ///< kGreyUnit grey levels
-  std::vector<std::uint16_t> depth;                       ///< kDepthUnitM along the optical axis of the colour camera, 0 = none
+  /// kDepthUnitM along the optical axis of the colour camera, 0 = none. A mean of 1 / depth, which is linear over the image of a
+  /// plane: a mean of depths lies behind it.
+  std::vector<std::uint16_t> depth;
 
   [[nodiscard]] bool empty() const { return grey.empty(); }
   [[nodiscard]] std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x); }
@@ -42,7 +44,7 @@ class ThumbnailMaker {
   RgbdCamera camera_;
   UndistortionTable depth_rays_;
   std::vector<Sample> samples_;
-  std::vector<float> nearest_m_, sum_m_;
+  std::vector<float> nearest_m_, sum_per_m_;
   std::vector<std::uint32_t> counts_;
 };
 

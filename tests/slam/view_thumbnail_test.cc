@@ -55,6 +55,31 @@ TEST(ViewThumbnail, AveragesGreyAndTakesTheNearerSurface) {
   EXPECT_EQ(view.depth[view.index(50, 20)], 0);
 }
 
+// A floor seen at a grazing angle: a mean of depths would lie behind it, one that drops the far end of a cell before it.
+TEST(ViewThumbnail, ASlantedPlaneHasTheDepthOfTheMiddleOfACell) {
+  RgbdCamera camera = registered_camera();
+  camera.depth_unit_m = 0.0001;
+  const auto plane = [&](double x, double y) { return 1.0 / (0.002 * (y - 200) + 0.0001 * x); };
+  Images images;
+  for (int y = 0; y < 480; ++y) {
+    for (int x = 0; x < 640; ++x) {
+      const double z = plane(x, y);
+      images.depth.at(x, y) = z > 0.5 && z < 5 ? static_cast<std::uint16_t>(std::lround(z / 0.0001)) : std::uint16_t{0};
+    }
+  }
+  const ViewThumbnail view = ThumbnailMaker(camera).make(images.frame());
+  int num_checked = 0;
+  for (int y = 0; y < view.height; ++y) {
+    for (int x = 0; x < view.width; ++x) {
+      const double z = plane(8 * x + 3.5, 8 * y + 3.5);
+      if (!(z > 0.6 && z < 4)) continue;
+      EXPECT_NEAR(depth_m(view, x, y), z, 0.0004) << x << " " << y;
+      ++num_checked;
+    }
+  }
+  EXPECT_GT(num_checked, 1000);
+}
+
 // The depth camera sits 10 cm to the left and has another focal length: what is near moves farther.
 TEST(ViewThumbnail, ProjectsDepthThatIsNotRegistered) {
   RgbdCamera camera = registered_camera();
