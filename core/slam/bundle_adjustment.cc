@@ -7,11 +7,13 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <optional>
 
 #include "core/geometry/pose_jacobian.h"
 #include "core/slam/landmark_elimination.h"
+#include "core/slam/pose_graph_terms.h"
 
 namespace camloc {
 namespace {
@@ -32,6 +34,17 @@ std::vector<PointPrior> sorted_priors(const std::vector<PointPrior>& priors) {
   return sorted;
 }
 
+/// Robust cost and weight of a link by Cauchy's kernel; a link that makes no sense takes no part.
+struct RobustLink {
+  double cost = 0, weight = 0;
+};
+
+RobustLink robust_link(double chi2, double kernel_sigmas) {
+  if (!std::isfinite(chi2)) return {};
+  const double inner = kernel_sigmas * kernel_sigmas;
+  return {inner * std::log1p(chi2 / inner), 1 / (1 + chi2 / inner)};
+}
+
 class BundleAdjuster {
  public:
   BundleAdjuster(const BundleOptions& options, BundleProblem* problem);
@@ -50,6 +63,7 @@ class BundleAdjuster {
   [[nodiscard]] BlockPattern covisibility() const;
   double linearize(const State& state, double damping);
   [[nodiscard]] double cost_of(const State& state) const;
+  double add_link(const PoseGraphEdge& link, const State& state);
   bool solve(double damping);
   void step(double damping);
   void place_landmarks_seen_once();
@@ -106,6 +120,10 @@ BlockPattern BundleAdjuster::covisibility() const {
       }
     }
   });
+  for (const PoseGraphEdge& link : problem_.links) {
+    const std::uint32_t i = free_index_[link.i], j = free_index_[link.j];
+    if (i != kFixedCamera && j != kFixedCamera) pattern.add(i, j);
+  }
   return pattern;
 }
 
@@ -118,6 +136,7 @@ double BundleAdjuster::linearize(const State& state, double damping) {
   for_each_landmark([&](std::uint32_t i, const LandmarkObservations& landmark) {
     cost += eliminator.eliminate(landmark, state.landmarks_m[i], damping, &*reduced_);
   });
+  for (const PoseGraphEdge& link : problem_.links) cost += add_link(link, state);
   return cost;
 }
 
@@ -128,7 +147,33 @@ double BundleAdjuster::cost_of(const State& state) const {
   for_each_landmark([&](std::uint32_t i, const LandmarkObservations& landmark) {
     cost += eliminator.cost(landmark, state.landmarks_m[i]);
   });
+  for (const PoseGraphEdge& link : problem_.links) {
+    const EdgeTerm term = edge_term(link, state.T_map_camera[link.i], state.T_map_camera[link.j]);
+    cost += robust_link(term.residual.squaredNorm(), options_.link_kernel_sigmas).cost;
+  }
   return cost;
+}
+
+/// Adds the link to the system over the cameras; returns its cost.
+double BundleAdjuster::add_link(const PoseGraphEdge& link, const State& state) {
+  const std::uint32_t i = free_index_[link.i], j = free_index_[link.j];
+  const EdgeTerm term = edge_term(link, state.T_map_camera[link.i], state.T_map_camera[link.j]);
+  const RobustLink robust = robust_link(term.residual.squaredNorm(), options_.link_kernel_sigmas);
+  if (robust.weight == 0.0 || link.i == link.j) return robust.cost;
+  const auto add_own = [&](std::uint32_t row, const Matrix6d& J) {
+    if (row == kFixedCamera) return;
+    const Matrix6d H = robust.weight * J.transpose() * J;
+    Eigen::Map<Matrix6d>(reduced_->system.block(row, row)) += H;
+    reduced_->diagonal[row] += H.diagonal();
+    reduced_->system.gradient(row) += robust.weight * J.transpose() * term.residual;
+  };
+  add_own(i, term.J_i);
+  add_own(j, term.J_j);
+  if (i == kFixedCamera || j == kFixedCamera) return robust.cost;
+  const Matrix6d& J_row = i < j ? term.J_i : term.J_j;
+  const Matrix6d& J_column = i < j ? term.J_j : term.J_i;
+  Eigen::Map<Matrix6d>(reduced_->system.block(std::min(i, j), std::max(i, j))) += robust.weight * J_row.transpose() * J_column;
+  return robust.cost;
 }
 
 /// The cameras' steps from the system as it was linearized; a camera that sees nothing keeps its place.

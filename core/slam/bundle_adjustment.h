@@ -7,6 +7,7 @@
 // whitened residual,
 //     sum over observations of  rho_px(|f (x - x_predicted)|^2 / sigma_px^2) + rho_depth((depth - z)^2 / sigma(z)^2)
 //   + sum over point priors of  |p - p_prior|^2 / sigma^2
+//   + sum over links of  rho_link(|pose_error|^2 in the metric of its covariance)
 // is minimized by Levenberg-Marquardt on the Schur complement (Triggs, McLauchlan, Hartley, Fitzgibbon, "Bundle adjustment -
 // a modern synthesis", 2000): the landmarks are eliminated, what remains is a system over the cameras, dense where they are
 // few and sparse where they are many. The scale of the depth is never free: without an absolute reference a free scale
@@ -19,6 +20,7 @@
 
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
+#include "core/slam/pose_graph.h"
 
 namespace camloc {
 
@@ -43,6 +45,7 @@ struct BundleProblem {
   std::vector<Eigen::Vector3d> landmarks_m;        ///< in `map`
   std::vector<BundleObservation> observations;     ///< ordered by landmark
   std::vector<PointPrior> priors;
+  std::vector<PoseGraphEdge> links;                ///< between two cameras, measured otherwise than by landmarks
 };
 
 struct BundleOptions {
@@ -51,6 +54,7 @@ struct BundleOptions {
   bool use_depth = true;             ///< false: reprojection errors only, for comparison
   double pixel_kernel_sigmas = 2.45; ///< width of the Huber kernel over |pixel residual| / sigma
   double depth_kernel_sigmas = 2.0;  ///< and over the depth residual
+  double link_kernel_sigmas = 3.5;   ///< of Cauchy's kernel over the Mahalanobis distance of a link, which has six dimensions
   int max_iterations = 20;
   double min_relative_decrease = 1e-5;  ///< of the cost, below which the adjustment has converged
   std::uint32_t max_dense_cameras = 250;  ///< free cameras up to which the reduced system is dense
@@ -82,6 +86,7 @@ using BundleCallback = std::function<bool(int iteration, double cost)>;
 ///  - An observation whose landmark is behind the camera (nearer than 5 cm), more than 45 degrees off, or not finite takes no
 ///    part for as long as that is so, at the cost it would have at 45 degrees. Depths and priors that are not positive and
 ///    finite are ignored.
+///  - A link of a camera with itself, or one that is not finite or has no positive definite covariance, takes no part.
 ///  - The kernels are applied by iteratively reweighted least squares: with many gross outliers the last permille of the cost
 ///    takes many iterations, so take outliers out by bundle_residuals() and adjust again.
 /// Besides the problem, memory is a second copy of poses and landmarks and the reduced system, whose blocks (288 bytes) are

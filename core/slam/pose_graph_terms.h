@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Inside of pose_graph.cc: whitened residuals of edges and priors and their derivatives by the poses, each pose changing in
-// its own axes (see pose_jacobian.h).
+// Inside of pose_graph.cc and bundle_adjustment.cc: whitened residuals of edges and priors and their derivatives by the poses,
+// each pose changing in its own axes (see pose_jacobian.h).
 #pragma once
 
 #include "core/slam/pose_graph.h"

@@ -267,6 +267,39 @@ TEST(BundleAdjustment, CameraThatSeesNothingKeepsItsPlace) {
   expect_finite(world.start);
 }
 
+// Camera 7 sees nothing: a link to camera 4 says where it is.
+TEST(BundleAdjustment, LinksHoldWhatNoLandmarkHolds) {
+  for (const std::uint32_t max_dense_cameras : {250U, 0U}) {
+    std::mt19937 rng(11);
+    BundleWorldOptions o;
+    o.noise_px = 0.3;
+    BundleWorld world = make_bundle_world(rng, o);
+    world.options.max_dense_cameras = max_dense_cameras;
+    std::erase_if(world.start.observations, [](const BundleObservation& observation) { return observation.camera == 7; });
+    const Rigid3 T_4_7 = world.truth.T_map_camera[4].inverse() * world.truth.T_map_camera[7];
+    world.start.links = {{7, 4, T_4_7.inverse(), 1e-6 * Matrix6d::Identity()}};
+    const BundleReport report = adjust_bundle(world.options, &world.start);
+    EXPECT_EQ(report.is_sparse, max_dense_cameras == 0);
+    const Rigid3 found = world.start.T_map_camera[4].inverse() * world.start.T_map_camera[7];
+    EXPECT_LT((found.translation - T_4_7.translation).norm(), 1e-4);
+    EXPECT_LT(rotation_distance_rad(found.rotation, T_4_7.rotation), 1e-4);
+    EXPECT_LT(camera_error_m(world.start, world.truth), 0.01);
+  }
+}
+
+TEST(BundleAdjustment, AWrongLinkIsOutvotedAndOneThatMakesNoSenseIgnored) {
+  std::mt19937 rng(12);
+  BundleWorld world = make_bundle_world(rng, {});
+  BundleProblem alone = world.start, linked = world.start;
+  const Rigid3 T_4_5 = world.truth.T_map_camera[4].inverse() * world.truth.T_map_camera[5];
+  linked.links.push_back({4, 5, T_4_5 * Rigid3{Eigen::Quaterniond::Identity(), {0.5, 0, 0}}, 1e-4 * Matrix6d::Identity()});
+  linked.links.push_back({2, 3, {}, Matrix6d::Zero()});
+  linked.links.push_back({2, 3, {}, Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN())});
+  adjust_bundle(world.options, &alone);
+  adjust_bundle(world.options, &linked);
+  EXPECT_LT(camera_error_m(linked, alone), 0.002);
+}
+
 TEST(BundleAdjustment, SameBitsTwice) {
   std::mt19937 rng(14);
   BundleWorldOptions options;
