@@ -32,6 +32,11 @@ void DeadReckoning::note_links(std::uint32_t keyframe) {
   looseness_[keyframe] = looseness_of(neighbours.empty() ? 0 : neighbours.front().num_shared);
 }
 
+void DeadReckoning::note_bridged(std::uint32_t keyframe) {
+  if (looseness_.size() <= keyframe) looseness_.resize(keyframe + 1, kMaxLooseness);
+  looseness_[keyframe] = 1;
+}
+
 // Grows with the way between the two, and with every weak link on it.
 DeadReckoning::Drift DeadReckoning::drift(std::uint32_t a, std::uint32_t b) const {
   const auto [from, to] = std::minmax(a, b);

@@ -34,6 +34,8 @@ class DeadReckoning {
   void begin_segment(const SegmentBegin& begin) { begins_.push_back(begin); }
   /// A keyframe is in the map with all it shares with those before; ascending.
   void note_links(std::uint32_t keyframe);
+  /// A keyframe is held by a link of another kind, whose error is noted with one that follows.
+  void note_bridged(std::uint32_t keyframe);
 
   /// A correction of the keyframe's pose by what it sees of a place, in units of what dead reckoning may be off. Between two
   /// segments it is 0 where the camera can have come that far while it was lost, and where nothing is known. Above

@@ -24,6 +24,11 @@ LoopCloser::LoopCloser(const LoopOptions& options, SlamMap* map, ViewRegistratio
       reckoning_(options, map),
       detector_(options, map, registration, &reckoning_) {}
 
+void LoopCloser::add_link(const PoseGraphEdge& link) {
+  links_.push_back(link);
+  reckoning_.note_bridged(link.j);
+}
+
 LoopReport LoopCloser::consider(std::uint32_t keyframe, const PlaceIndex& places) {
   LoopReport report;
   reckoning_.note_links(keyframe);

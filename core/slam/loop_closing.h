@@ -38,7 +38,7 @@ class LoopCloser {
 
   void begin_segment(const SegmentBegin& begin) { reckoning_.begin_segment(begin); }
   /// A relative pose of two keyframes of one segment that is known otherwise than by common landmarks.
-  void add_link(const PoseGraphEdge& link) { links_.push_back(link); }
+  void add_link(const PoseGraphEdge& link);
   /// A keyframe that is in the map with all it shares with others. `places` holds keyframes that may have been seen before.
   LoopReport consider(std::uint32_t keyframe, const PlaceIndex& places);
 

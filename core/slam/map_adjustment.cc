@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/order_statistics.h"
+#include "core/slam/pose_graph_terms.h"
 
 namespace camloc {
 namespace {
@@ -162,6 +163,24 @@ void add_controls(std::span<const ControlLandmark> controls, Extract* extract) {
   if (problem.priors.size() >= 3) problem.is_camera_fixed.assign(extract->keyframes.size(), 0);
 }
 
+// Links of the segment's keyframes, with covariances that fit what they are off by now: half of them below the median that six
+// degrees of freedom lead to expect.
+void add_links(std::span<const PoseGraphEdge> links, Extract* extract) {
+  constexpr double kMedianChi2 = 5.35;
+  BundleProblem& problem = extract->problem;
+  std::vector<double> chi2;
+  for (PoseGraphEdge link : links) {
+    link.i = extract->camera_of_keyframe[link.i];
+    link.j = extract->camera_of_keyframe[link.j];
+    if (link.i == kAbsent || link.j == kAbsent) continue;
+    chi2.push_back(edge_term(link, problem.T_map_camera[link.i], problem.T_map_camera[link.j]).residual.squaredNorm());
+    problem.links.push_back(link);
+  }
+  if (chi2.empty()) return;
+  const double excess = std::max(upper_median(std::move(chi2)) / kMedianChi2, 1.0);
+  for (PoseGraphEdge& link : problem.links) link.covariance *= excess;
+}
+
 }  // namespace
 
 MapFit adjust_locally(const BundleOptions& bundle, const LocalAdjustmentOptions& options, std::uint32_t keyframe, SlamMap* map) {
@@ -178,13 +197,14 @@ MapFit adjust_locally(const BundleOptions& bundle, const LocalAdjustmentOptions&
   return fit;
 }
 
-MapFit adjust_globally(const BundleOptions& bundle, std::uint32_t segment, std::span<const ControlLandmark> controls,
+MapFit adjust_globally(const BundleOptions& bundle, std::uint32_t segment, const MapEvidence& evidence,
                        double max_pixel_sigmas, SlamMap* map, const BundleCallback& on_iteration) {
   std::uint64_t num_removed = 0;
   MapFit fit;
   for (int round = 0; round < 2; ++round) {
     Extract extract = extract_segment(segment, *map);
-    add_controls(controls, &extract);
+    add_controls(evidence.controls, &extract);
+    add_links(evidence.links, &extract);
     const BundleReport report = adjust_bundle(bundle, &extract.problem, on_iteration);
     write_back(extract, map);
     const std::vector<BundleResidual> residuals = bundle_residuals(bundle, extract.problem);

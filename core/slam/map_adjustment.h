@@ -46,9 +46,16 @@ struct ControlLandmark {
   std::vector<Seen> seen;
 };
 
+/// What is known about the keyframes of a map besides their sightings.
+struct MapEvidence {
+  std::span<const ControlLandmark> controls;
+  std::span<const PoseGraphEdge> links;   ///< between keyframes, e.g. by dense alignment
+};
+
 /// Adjusts all keyframes of a segment twice, without the worst sightings the second time. Control landmarks hold the map where
-/// they were surveyed; with three or more of them the first keyframe moves, too.
-MapFit adjust_globally(const BundleOptions& bundle, std::uint32_t segment, std::span<const ControlLandmark> controls,
+/// they were surveyed; with three or more of them the first keyframe moves, too. Links count as much less as they disagree with
+/// the map in their median: their covariances know nothing of a depth camera that is bent or not in step with the colour camera.
+MapFit adjust_globally(const BundleOptions& bundle, std::uint32_t segment, const MapEvidence& evidence,
                        double max_pixel_sigmas, SlamMap* map, const BundleCallback& on_iteration = {});
 
 }  // namespace camloc

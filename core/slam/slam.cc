@@ -17,6 +17,11 @@ constexpr double kPixelKernelSigmas = 1.2, kDepthKernelSigmas = 1.3;
 // Common landmarks of two views one after the other.
 constexpr std::uint32_t kStrongLink = 150;
 
+// Bridged views become keyframes when they show something new: so far from the last one.
+constexpr double kBridgedKeyframeM = 0.15, kBridgedKeyframeRad = 0.1;
+constexpr std::uint32_t kBridgedNeighbours = 3;   // keyframes before it that its few features are compared with
+constexpr float kBridgedRadiusPx = 8;
+
 RegistrationOptions registration_options(const SlamOptions& options) {
   RegistrationOptions registration;
   registration.use_depth = options.use_depth_in_tracking;
@@ -37,9 +42,17 @@ Slam::Slam(const RgbdCamera& camera, const SlamOptions& options)
       registration_(camera, options.scale_factor, registration_options(options)),
       tracker_(options.tracker, &map_, &registration_),
       loops_(options.loops, &map_, &registration_),
-      bridge_(camera, options.bridge) {}
+      bridge_(camera, options.bridge),
+      links_(camera, options.links) {}
 
 ViewReport Slam::add_view(std::uint64_t frame, const ViewFeatures& view, const ViewThumbnail& thumbnail) {
+  const ViewReport report = place_view(frame, view, thumbnail);
+  if (report.is_keyframe && !report.is_bridged)
+    links_.add_keyframe(map_, static_cast<std::uint32_t>(map_.keyframes().size()) - 1, thumbnail);
+  return report;
+}
+
+ViewReport Slam::place_view(std::uint64_t frame, const ViewFeatures& view, const ViewThumbnail& thumbnail) {
   ViewReport report;
   ++counts_.num_views;
   if (map_.keyframes().empty()) {
@@ -94,31 +107,53 @@ bool Slam::go_on_by_depth(std::uint64_t frame, const ViewFeatures& view, const V
   report->is_bridged = true;
   ++counts_.num_bridged;
   tracker_.accept(view.stamp_ns, T_map_begin * step->T_begin_camera);
-  if (is_bare) {
+  const Rigid3 T_last_camera = map_.keyframes().back().view.T_map_camera.inverse() * T_map_begin * step->T_begin_camera;
+  const bool is_new_sight = T_last_camera.translation.norm() > kBridgedKeyframeM ||
+                            rotation_distance_rad(T_last_camera.rotation, Eigen::Quaterniond::Identity()) > kBridgedKeyframeRad;
+  if (is_bare && !is_new_sight) {
     remember(frame, view, {}, false);
-  } else {
-    end_bridge(frame, view, *step, report);
-    begin_bridge(view.stamp_ns, thumbnail);
+    return true;
   }
+  const std::uint32_t keyframe = add_bridged_keyframe(frame, view, thumbnail, *step);
+  report->is_keyframe = true;
+  if (!is_bare) end_bridge(keyframe, report);
+  places_.add(view.features.descriptors);
+  if (!is_bare) begin_bridge(view.stamp_ns, thumbnail);
   return true;
 }
 
-// There are features again, but of nothing that is known: the map goes on from here, held by what the bridge says.
-void Slam::end_bridge(std::uint64_t frame, ViewFeatures view, const DepthBridge::Step& step, ViewReport* report) {
-  const std::uint32_t before = bridge_begin_.reference;
+// Held by dense links, and by what few features it shares with those before.
+std::uint32_t Slam::add_bridged_keyframe(std::uint64_t frame, ViewFeatures view, const ViewThumbnail& thumbnail,
+                                         const DepthBridge::Step& step) {
+  const std::uint32_t before = bridge_begin_.reference, last = static_cast<std::uint32_t>(map_.keyframes().size()) - 1;
   const Rigid3 T_before_camera = bridge_begin_.T_reference_camera * step.T_begin_camera;
   view.T_map_camera = map_.keyframe(before).view.T_map_camera * T_before_camera;
-  report->is_keyframe = true;
-  const std::uint32_t keyframe = insert_keyframe(frame, map_.keyframe(before).segment, view, {}, &map_);
-  loops_.add_link({before, keyframe, T_before_camera,
-                   rotate_covariance(bridge_begin_.T_reference_camera.rotation, step.covariance) + link_covariance(T_before_camera, kStrongLink)});
-  tracker_.set_reference(keyframe);
+  const std::uint32_t segment = map_.keyframe(before).segment;
+  const std::uint32_t keyframe = insert_keyframe(frame, segment, view, {}, &map_);
+  std::vector<std::uint32_t> nearby;
+  for (std::uint32_t k = last; k + kBridgedNeighbours > last && map_.keyframe(k).segment == segment; --k) {
+    nearby.push_back(k);
+    if (k == 0) break;
+  }
+  LandmarkSet landmarks;
+  landmarks.assign(map_, nearby, options_.tracker.max_local_landmarks);
+  fuse_into_keyframe(&landmarks, keyframe, kBridgedRadiusPx, &registration_, &map_);
+  const Matrix6d covariance = rotate_covariance(bridge_begin_.T_reference_camera.rotation, step.covariance);
+  loops_.add_link({before, keyframe, T_before_camera, covariance + link_covariance(T_before_camera, kStrongLink)});
+  if (links_.add_keyframe(map_, keyframe, thumbnail) == 0) links_.add({before, keyframe, T_before_camera, covariance});
   remember(frame, view, {}, true);
+  tracked_.back().reference = keyframe;
+  tracked_.back().T_reference_camera = {};
+  return keyframe;
+}
+
+// There are features again, but of nothing that is known: the map goes on from here.
+void Slam::end_bridge(std::uint32_t keyframe, ViewReport* report) {
+  tracker_.set_reference(keyframe);
   if (options_.close_loops) {
     report->loop = loops_.consider(keyframe, places_);
     count(report->loop);
   }
-  places_.add(view.features.descriptors);
   tracker_.refresh();
 }
 
@@ -249,19 +284,25 @@ void Slam::refine_all_sightings() {
   for (std::uint32_t k = 0; k < map_.keyframes().size(); ++k) map_.keyframe(k).view.patches = {};
 }
 
+// Dense links are depth, too.
+MapEvidence Slam::evidence(std::span<const ControlLandmark> controls) const {
+  return {controls, options_.use_depth_in_adjustment ? links_.links() : std::span<const PoseGraphEdge>()};
+}
+
 SlamResult Slam::finish(const BundleCallback& on_iteration) {
   join_leftover_segments();
   refine_all_sightings();
   fits_.clear();
   for (const SlamKeyframe& keyframe : map_.keyframes()) fits_[keyframe.segment];
-  for (auto& [segment, fit] : fits_) fit = adjust_globally(bundle_options(), segment, {}, options_.max_pixel_sigmas, &map_, on_iteration);
+  for (auto& [segment, fit] : fits_)
+    fit = adjust_globally(bundle_options(), segment, evidence({}), options_.max_pixel_sigmas, &map_, on_iteration);
   return result();
 }
 
 SlamResult Slam::adjust_to(std::span<const ControlLandmark> controls, const BundleCallback& on_iteration) {
   if (!controls.empty() && !controls.front().seen.empty()) {
     const std::uint32_t segment = map_.keyframe(controls.front().seen.front().keyframe).segment;
-    fits_[segment] = adjust_globally(bundle_options(), segment, controls, options_.max_pixel_sigmas, &map_, on_iteration);
+    fits_[segment] = adjust_globally(bundle_options(), segment, evidence(controls), options_.max_pixel_sigmas, &map_, on_iteration);
   }
   return result();
 }

@@ -14,6 +14,7 @@
 #include <span>
 #include <vector>
 
+#include "core/slam/dense_links.h"
 #include "core/slam/depth_bridge.h"
 #include "core/slam/depth_weight.h"
 #include "core/slam/far_landmarks.h"
@@ -41,6 +42,7 @@ struct SlamOptions {
   FarLandmarkOptions far_landmarks;
   std::size_t num_fused_neighbours = 5;
   DepthBridgeOptions bridge;
+  DenseLinkOptions links;
   int max_lost_views = 10;             ///< after so many in a row a new segment begins
   std::uint32_t min_segment_features = 200;  ///< features with depth that a view needs to begin one, or to end a bridge
   std::vector<std::uint64_t> required_keyframes;   ///< frames that become keyframes whatever they show, ascending
@@ -95,7 +97,7 @@ class Slam {
   Slam(const RgbdCamera& camera, const SlamOptions& options);
 
   /// The next view; `frame` is its index in the recording, ascending. Patches are kept of those that become keyframes, until
-  /// finish(). With thumbnails, stretches without features are bridged.
+  /// finish(). With thumbnails, stretches without features are bridged, and keyframes linked by all their pixels.
   ViewReport add_view(std::uint64_t frame, const ViewFeatures& view, const ViewThumbnail& thumbnail = {});
   [[nodiscard]] SlamCounts counts() const;
 
@@ -123,9 +125,12 @@ class Slam {
     std::vector<Seen> seen;
   };
 
+  ViewReport place_view(std::uint64_t frame, const ViewFeatures& view, const ViewThumbnail& thumbnail);
   void begin_bridge(std::int64_t stamp_ns, const ViewThumbnail& thumbnail);
   bool go_on_by_depth(std::uint64_t frame, const ViewFeatures& view, const ViewThumbnail& thumbnail, ViewReport* report);
-  void end_bridge(std::uint64_t frame, ViewFeatures view, const DepthBridge::Step& step, ViewReport* report);
+  std::uint32_t add_bridged_keyframe(std::uint64_t frame, ViewFeatures view, const ViewThumbnail& thumbnail,
+                                     const DepthBridge::Step& step);
+  void end_bridge(std::uint32_t keyframe, ViewReport* report);
   bool begin_segment(std::uint64_t frame, ViewFeatures view, ViewReport* report);
   void add_keyframe(std::uint64_t frame, ViewFeatures view, const Registration& tracked, ViewReport* report);
   void adjust_around(std::uint32_t keyframe);
@@ -134,6 +139,7 @@ class Slam {
   void count(const LoopReport& loop);
   void remember(std::uint64_t frame, const ViewFeatures& view, const Registration& tracked, bool is_keyframe);
   [[nodiscard]] BundleOptions bundle_options() const;
+  [[nodiscard]] MapEvidence evidence(std::span<const ControlLandmark> controls) const;
   [[nodiscard]] SlamResult result() const;
   [[nodiscard]] Rigid3 final_pose(const TrackedView& view) const;
 
@@ -145,6 +151,7 @@ class Slam {
   Tracker tracker_;
   LoopCloser loops_;
   DepthBridge bridge_;
+  DenseLinks links_;
   struct {
     std::uint32_t reference = 0;
     Rigid3 T_reference_camera;

@@ -140,7 +140,7 @@ TEST(MapAdjustment, ControlLandmarksMoveTheMapToWhereTheyWereSurveyed) {
   std::vector<Rigid3> expected;
   for (const SlamKeyframe& k : d.map.keyframes()) expected.push_back(T_site_map * k.view.T_map_camera);
   const std::size_t num_landmarks = d.map.landmarks().size();
-  adjust_globally(bundle_for(d.viewer.camera()), 0, controls, 3.0, &d.map);
+  adjust_globally(bundle_for(d.viewer.camera()), 0, {controls, {}}, 3.0, &d.map);
   for (std::uint32_t k = 0; k < 6; ++k) {
     EXPECT_LT((d.map.keyframe(k).view.T_map_camera.translation - expected[k].translation).norm(), 0.01);
     EXPECT_LT(rotation_distance_rad(d.map.keyframe(k).view.T_map_camera.rotation, expected[k].rotation), 0.005);
@@ -148,8 +148,22 @@ TEST(MapAdjustment, ControlLandmarksMoveTheMapToWhereTheyWereSurveyed) {
   EXPECT_EQ(d.map.landmarks().size(), num_landmarks);   // nobody finds a control point by its looks
   // Two do not determine a frame: the first keyframe stays.
   const Rigid3 first = d.map.keyframe(0).view.T_map_camera;
-  adjust_globally(bundle_for(d.viewer.camera()), 0, std::span(controls).first(2), 3.0, &d.map);
+  adjust_globally(bundle_for(d.viewer.camera()), 0, {std::span(controls).first(2), {}}, 3.0, &d.map);
   EXPECT_EQ(d.map.keyframe(0).view.T_map_camera.translation, first.translation);
+}
+
+// Their covariances promise a hundred times what they keep.
+TEST(MapAdjustment, LinksThatDisagreeWithTheMapCountLess) {
+  Disturbed alone, linked;
+  adjust_globally(bundle_for(alone.viewer.camera()), 0, {}, 3.0, &alone.map);
+  std::mt19937 rng(3);
+  std::vector<PoseGraphEdge> links;
+  for (std::uint32_t k = 1; k < 6; ++k) {
+    const Rigid3 T_i_j = alone.map.keyframe(k - 1).view.T_map_camera.inverse() * alone.map.keyframe(k).view.T_map_camera;
+    links.push_back({k - 1, k, testing::disturbed(rng, T_i_j, 0.05, 0.05), 1e-7 * Matrix6d::Identity()});
+  }
+  adjust_globally(bundle_for(linked.viewer.camera()), 0, {{}, links}, 3.0, &linked.map);
+  EXPECT_LT(linked.error_m(), alone.error_m() + 0.003);
 }
 
 }  // namespace

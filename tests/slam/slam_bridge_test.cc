@@ -44,9 +44,17 @@ TEST(SlamBridge, CarriesAcrossABareWall) {
   EXPECT_GE(turn.slam.counts().num_bridged, kBareEnd - kBareBegin);
   EXPECT_EQ(result.poses.size(), 90U);
   EXPECT_LT(trajectory_error_m(result, 0, turn.T_world_camera), 0.03);
-  std::uint32_t num_bridged = 0;
-  for (const ViewReport& report : turn.reports) num_bridged += report.is_bridged ? 1U : 0U;
+  std::uint32_t num_bridged = 0, num_keyframes = 0;
+  for (const ViewReport& report : turn.reports) {
+    num_bridged += report.is_bridged ? 1U : 0U;
+    num_keyframes += report.is_bridged && report.is_keyframe ? 1U : 0U;
+  }
   EXPECT_EQ(num_bridged, turn.slam.counts().num_bridged);
+  EXPECT_GE(num_keyframes, 10U);   // 1.2 rad are turned
+  const Rigid3 T_before_after = result.poses[kBareBegin - 1].T_map_camera.inverse() * result.poses[kBareEnd].T_map_camera;
+  const Rigid3 expected = turn.T_world_camera[kBareBegin - 1].inverse() * turn.T_world_camera[kBareEnd];
+  EXPECT_LT((T_before_after.translation - expected.translation).norm(), 0.015);
+  EXPECT_LT(rotation_distance_rad(T_before_after.rotation, expected.rotation), 0.004);
 }
 
 TEST(SlamBridge, WithoutThumbnailsASegmentEnds) {

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// How keyframes lie to each other by all their pixels: each is aligned with some before it. Where features huddle together on
+// one poster, they hardly tell a turn from a step to the side, and the error of each keyframe is handed on to the next; the wall
+// around the poster tells at once.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "core/slam/dense_alignment.h"
+#include "core/slam/pose_graph.h"
+#include "core/slam/slam_map.h"
+#include "core/slam/view_thumbnail.h"
+
+namespace camloc {
+
+struct DenseLinkOptions {
+  DenseAlignmentOptions alignment;
+  std::vector<std::uint32_t> steps = {1, 3};   ///< how many keyframes back
+  double prior_sigma_m = 0.05, prior_sigma_rad = 0.05;   ///< of the keyframes' poses relative to each other
+};
+
+/// Not thread-safe. Holds the thumbnails of a few keyframes.
+class DenseLinks {
+ public:
+  DenseLinks(const RgbdCamera& camera, const DenseLinkOptions& options)
+      : options_(options), aligner_(camera, options.alignment) {}
+
+  /// The keyframe that has just come into the map; returns how many links it got. One without thumbnail gets none.
+  int add_keyframe(const SlamMap& map, std::uint32_t keyframe, const ViewThumbnail& thumbnail);
+  /// A link that comes from elsewhere.
+  void add(const PoseGraphEdge& link) { links_.push_back(link); }
+
+  [[nodiscard]] std::span<const PoseGraphEdge> links() const { return links_; }
+
+ private:
+  struct Recent {
+    std::uint32_t keyframe;
+    ViewThumbnail thumbnail;
+  };
+  DenseLinkOptions options_;
+  DenseAligner aligner_;
+  std::deque<Recent> recent_;   ///< the newest at the front
+  std::vector<PoseGraphEdge> links_;
+};
+
+}  // namespace camloc
