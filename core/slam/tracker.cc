@@ -70,16 +70,24 @@ bool Tracker::is_plausible(const Registration& found, std::int64_t stamp_ns) con
   return (found.T_map_camera.translation - T_map_last.translation).norm() <= 0.2 + options_.max_speed_m_s * dt_s;
 }
 
+// A wider search is made where the one before has lost much of what the last view saw: a pattern that repeats (the fins of a
+// radiator) may agree with itself one period off, but then the rest of the image does not.
 Registration Tracker::track(const ViewFeatures& view, std::uint64_t seed) {
   update_local_set();
   const Rigid3 T_predicted = predict(view.stamp_ns);
-  Registration found = registration_->guided(view, &local_, T_predicted, options_.radius_px, seed);
-  if (!is_plausible(found, view.stamp_ns)) found = registration_->guided(view, &local_, T_predicted, options_.wide_radius_px, seed);
-  if (!is_plausible(found, view.stamp_ns)) found = registration_->unguided(view, &local_, seed);
-  if (!is_plausible(found, view.stamp_ns)) return {};
-  const std::uint32_t best = best_reference(found);
-  if (best != reference_) set_reference(best);
-  return found;
+  Registration best;
+  const auto consider = [&](Registration found) {
+    if (is_plausible(found, view.stamp_ns) && found.num_inliers() > best.num_inliers()) best = std::move(found);
+    return best.num_inliers() >= options_.min_kept_share * num_last_inliers_ && best.is_found;
+  };
+  (void)(consider(registration_->guided(view, &local_, T_predicted, options_.radius_px, seed)) ||
+         consider(registration_->guided(view, &local_, T_predicted, options_.wide_radius_px, seed)) ||
+         consider(registration_->unguided(view, &local_, seed)));
+  if (!best.is_found) return {};
+  num_last_inliers_ = best.num_inliers();
+  const std::uint32_t reference = best_reference(best);
+  if (reference != reference_) set_reference(reference);
+  return best;
 }
 
 // The keyframe that sees most of what the view sees.
@@ -112,6 +120,7 @@ Registration Tracker::find_back(const ViewFeatures& view, const PlaceIndex& plac
   const bool is_sure = best.is_found && best.num_inliers() >= options_.min_found_inliers && best.spread >= options_.min_spread &&
                        best.depth_agreement >= options_.min_depth_agreement;
   if (!is_sure) return {};
+  num_last_inliers_ = best.num_inliers();
   set_reference(best_keyframe);
   set_reference(best_reference(best));
   velocity_.reset();

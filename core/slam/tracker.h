@@ -22,6 +22,7 @@ struct TrackerOptions {
   float radius_px = 14, wide_radius_px = 40;   ///< search windows around the prediction
   int min_inliers = 30;
   double min_inlier_ratio = 0.3;
+  double min_kept_share = 0.5;                 ///< of the last view's inliers; with fewer, wider searches are tried, too
   double max_speed_m_s = 4.0;                  ///< a pose that asks for more is refused
   double max_gap_s = 0.5;                      ///< a longer gap between stamps ends the prediction
   // Finding back after a loss asks for more than going on.
@@ -76,6 +77,7 @@ class Tracker {
   std::uint32_t reference_ = 0;
   Rigid3 T_reference_camera_;
   std::int64_t last_stamp_ns_ = 0;
+  int num_last_inliers_ = 0;
   std::optional<Velocity> velocity_;
 };
 

@@ -20,7 +20,7 @@ struct Fixture : TrueKeyframes {
   PlaceIndex places;
   Tracker tracker{TrackerOptions{}, &map, &registration};
 
-  explicit Fixture(int second_segment = 12) : TrueKeyframes(testing::make_room(1, 90)) {
+  explicit Fixture(int second_segment = 12, const testing::World& of = testing::make_room(1, 90)) : TrueKeyframes(of) {
     for (int k = 0; k < 12; ++k) {
       const std::uint32_t keyframe = add(pose(0.2 * k), k < second_segment ? 0 : 1);
       if (k > 0 && k != second_segment) fuse_with_earlier(keyframe);
@@ -38,6 +38,22 @@ struct Fixture : TrueKeyframes {
     fuse_into_keyframe(&earlier, keyframe, 4, &registration, &map);
   }
 };
+
+/// Fins of a radiator on the wall that the first keyframe looks at: every one like the next, 10 cm (19 px) apart.
+testing::World room_with_radiator() {
+  testing::World world = testing::make_room(1, 90);
+  std::mt19937_64 rng(3);
+  for (int row = 0; row < 14; ++row) {
+    testing::WorldPoint point;
+    point.normal = -Eigen::Vector3d::UnitX();
+    point.descriptor = testing::random_descriptor(rng);
+    for (int fin = 0; fin < 12; ++fin) {
+      point.position_m = {2.95, 0.1 * fin - 0.55, 1.0 + 0.06 * row};
+      world.points.push_back(point);
+    }
+  }
+  return world;
+}
 
 double error_m(const Registration& found, const Rigid3& truth) { return (found.T_map_camera.translation - truth.translation).norm(); }
 
@@ -65,6 +81,20 @@ TEST(Tracker, PosesFollowTheirReferenceWhenItMoves) {
   f.tracker.set_reference(1);   // the pose is the same, said by another keyframe
   const Rigid3 now = f.map.keyframe(1).view.T_map_camera * f.tracker.T_reference_camera();
   EXPECT_LT((now.translation - (Fixture::pose(0).translation + Eigen::Vector3d(1, 0, 0))).norm(), 1e-9);
+}
+
+// The windows around the prediction hold the neighbouring fin where they should hold the fin.
+TEST(Tracker, ARepeatedPatternOnePeriodOffIsNotEnough) {
+  Fixture f(12, room_with_radiator());
+  const ViewFeatures before = f.viewer.see(101, Fixture::pose(0));
+  const Registration at_first = f.tracker.track(before, 1);
+  ASSERT_TRUE(at_first.is_found);
+  f.tracker.accept(before.stamp_ns, at_first.T_map_camera);
+  const Rigid3 truth{Fixture::pose(0).rotation, Fixture::pose(0).translation + Eigen::Vector3d(0, 0.1, 0)};
+  const Registration found = f.tracker.track(f.viewer.see(102, truth), 2);
+  ASSERT_TRUE(found.is_found);
+  EXPECT_LT(error_m(found, truth), 0.015);
+  EXPECT_GT(found.num_inliers(), at_first.num_inliers() / 2);
 }
 
 TEST(Tracker, AnImpossibleSpeedIsRefused) {
