@@ -20,6 +20,9 @@ constexpr std::int64_t kMaxConfirmationGapNs = 500'000'000;
 /// corridor of the synthetic building nine frames with about 30 inliers were taken for its twin 50 m away; true returns had 112
 /// and more.
 constexpr std::int64_t kLostMemoryNs = 60'000'000'000;
+/// For so long after places that look alike none of them is believed on thin evidence: in the synthetic building a bay was taken for
+/// its twin 3.6 m along the corridor right after two frames that could not tell them apart, because the rival was not found again.
+constexpr std::int64_t kAmbiguityMemoryNs = 1'000'000'000;
 /// A hypothesis with fewer inliers is not even a coarse place.
 constexpr std::uint32_t kMinCoarseInliers = 15;
 
@@ -81,6 +84,7 @@ void Localizer::watch_calibration(const PoseHypothesis& hypothesis) {
 void Localizer::reset() {
   motion_.reset();
   unconfirmed_.reset();
+  ambiguous_ns_.reset();
 }
 
 void Localizer::begin(const Frame& frame) {
@@ -115,6 +119,8 @@ Localizer::Candidate Localizer::search_globally(const Frame& frame) {
   Candidate candidate{.hypothesis = found.best, .margin = found.margin, .is_tracked = false};
   candidate.reason = found.has_candidates ? verify(found.best, found.margin, candidate.is_tracked, verification_) : Reason::kNoCandidates;
   if (candidate.reason == Reason::kNone && !fits_motion(frame, found.best) && !is_confirmed(frame, found.best)) candidate.reason = Reason::kImplausibleMotion;
+  if (candidate.reason == Reason::kAmbiguous) ambiguous_ns_ = frame.stamp_ns;
+  if (candidate.reason == Reason::kNone && was_ambiguous(frame, found.best)) candidate.reason = Reason::kAmbiguous;
   return candidate;
 }
 
@@ -136,6 +142,12 @@ bool Localizer::is_confirmed(const Frame& frame, const PoseHypothesis& hypothesi
   if (!is_continued) unconfirmed_since_ns_ = frame.stamp_ns;
   unconfirmed_.add_fix(frame.stamp_ns, hypothesis.T_map_camera, Matrix6d::Zero(), false);
   return frame.stamp_ns - unconfirmed_since_ns_ >= kConfirmationNs;
+}
+
+// Once the motion says little, places that looked alike must stay apart for a while before one of them is believed.
+bool Localizer::was_ambiguous(const Frame& frame, const PoseHypothesis& hypothesis) const {
+  if (hypothesis.num_inliers >= verification_.strong_inliers || is_recent(frame.stamp_ns, kMaxTrackingGapNs)) return false;
+  return ambiguous_ns_ && frame.stamp_ns - *ambiguous_ns_ <= kAmbiguityMemoryNs;
 }
 
 const Localization& Localizer::accept(const Frame& frame, const Candidate& candidate) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "core/base/frame.h"
 #include "core/features/orb_extractor.h"
@@ -55,6 +56,7 @@ class Localizer {
   [[nodiscard]] Candidate search_globally(const Frame& frame);
   [[nodiscard]] bool fits_motion(const Frame& frame, const PoseHypothesis& hypothesis) const;
   [[nodiscard]] bool is_confirmed(const Frame& frame, const PoseHypothesis& hypothesis);
+  [[nodiscard]] bool was_ambiguous(const Frame& frame, const PoseHypothesis& hypothesis) const;
   void watch_calibration(const PoseHypothesis& hypothesis);
   const Localization& accept(const Frame& frame, const Candidate& candidate);
   const Localization& decline(const Frame& frame, const Candidate& candidate);
@@ -70,7 +72,8 @@ class Localizer {
   GlobalSearch global_search_;
   MotionModel motion_;
   MotionModel unconfirmed_;   ///< the last fix that contradicts the motion so far
-  std::int64_t unconfirmed_since_ns_ = 0;  ///< when fixes that agree with it began
+  std::int64_t unconfirmed_since_ns_ = 0;     ///< when fixes that agree with it began
+  std::optional<std::int64_t> ambiguous_ns_;  ///< when another place last explained a frame nearly as well
   CalibrationMonitor calibration_;
   VerificationOptions verification_;
   double focal_px_;

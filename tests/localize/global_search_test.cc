@@ -13,32 +13,9 @@ namespace {
 
 using testing::SampleWorld;
 
-const Eigen::Vector3d kTwinOffset(20, 0, 0);
-
 /// The sample map with a second copy 20 m away of `percent` of its landmarks.
 MapData with_twin(std::uint32_t percent) {
-  MapData map = SampleWorld::get().data();
-  const auto num_landmarks = static_cast<std::uint32_t>(map.landmarks.size());
-  std::vector<std::uint32_t> twin_of(num_landmarks, UINT32_MAX);
-  for (std::uint32_t i = 0; i < num_landmarks; ++i) {
-    if (i * 37 % 100 >= percent) continue;
-    twin_of[i] = static_cast<std::uint32_t>(map.landmarks.size());
-    MapLandmark copy = map.landmarks[i];
-    copy.position_m += kTwinOffset.cast<float>();
-    map.landmarks.push_back(copy);
-  }
-  const std::size_t num_keyframes = map.keyframes.size();
-  for (std::size_t k = 0; k < num_keyframes; ++k) {
-    MapKeyframe copy = map.keyframes[k];
-    copy.T_map_camera.translation += kTwinOffset;
-    copy.landmarks.clear();
-    for (const std::uint32_t landmark : map.keyframes[k].landmarks) {
-      if (twin_of[landmark] != UINT32_MAX) copy.landmarks.push_back(twin_of[landmark]);
-    }
-    map.keyframes.push_back(copy);
-  }
-  testing::add_inverted_file(&map);
-  return map;
+  return testing::with_copy({20, 0, 0}, [&](std::uint32_t landmark, const Eigen::Vector3d&) { return landmark * 37 % 100 < percent; });
 }
 
 struct Searched {

@@ -109,6 +109,33 @@ inline bool is_finite(const Localization& r) {
   return is_ok;
 }
 
+/// The sample map with a second copy, `offset_m` away, of the landmarks that are wanted, seen from keyframes that are copied, too.
+inline MapData with_copy(const Eigen::Vector3d& offset_m,
+                         const std::function<bool(std::uint32_t landmark, const Eigen::Vector3d& p_map)>& is_wanted) {
+  MapData map = SampleWorld::get().data();
+  const auto num_landmarks = static_cast<std::uint32_t>(map.landmarks.size());
+  std::vector<std::uint32_t> copy_of(num_landmarks, UINT32_MAX);
+  for (std::uint32_t i = 0; i < num_landmarks; ++i) {
+    if (!is_wanted(i, map.landmarks[i].position_m.cast<double>())) continue;
+    copy_of[i] = static_cast<std::uint32_t>(map.landmarks.size());
+    MapLandmark copy = map.landmarks[i];
+    copy.position_m += offset_m.cast<float>();
+    map.landmarks.push_back(copy);
+  }
+  const std::size_t num_keyframes = map.keyframes.size();
+  for (std::size_t k = 0; k < num_keyframes; ++k) {
+    MapKeyframe copy = map.keyframes[k];
+    copy.T_map_camera.translation += offset_m;
+    copy.landmarks.clear();
+    for (const std::uint32_t landmark : map.keyframes[k].landmarks) {
+      if (copy_of[landmark] != UINT32_MAX) copy.landmarks.push_back(copy_of[landmark]);
+    }
+    map.keyframes.push_back(copy);
+  }
+  add_inverted_file(&map);
+  return map;
+}
+
 /// The room in a mirror, a place that looks as real as the room but is another one: the camera's principal point is the
 /// centre, so image and depth stay true to each other.
 inline void mirror(FrameBuffer* frame) {

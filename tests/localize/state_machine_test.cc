@@ -21,6 +21,15 @@ FrameBuffer black(std::uint64_t sequence) {
   return frame;
 }
 
+/// The sample map, where what lies in the left half of a frame's image is 20 m away once more.
+MapData with_copy_of_left_half(std::uint64_t index) {
+  const Rigid3 T_camera_map = sample_pose(index).inverse();
+  return testing::with_copy({20, 0, 0}, [&](std::uint32_t, const Eigen::Vector3d& p_map) {
+    const Eigen::Vector3d p = T_camera_map * p_map;
+    return p.z() <= 0 || p.x() < 0.05 * p.z();
+  });
+}
+
 class StateMachine : public ::testing::Test {
  protected:
   const Localization& see(std::uint64_t index, std::uint64_t sequence) {
@@ -72,6 +81,52 @@ TEST_F(StateMachine, CoastingTimeIsAnOption) {
   EXPECT_EQ(localizer.process(black(2).view()).state, State::kCoasting);
   EXPECT_EQ(localizer.process(black(3).view()).state, State::kCoasting);
   EXPECT_EQ(localizer.process(black(4).view()).state, State::kLost);
+}
+
+/// The image of a frame with nothing but a window of it, from column `left` to before `right`.
+FrameBuffer window(std::uint64_t index, std::uint64_t sequence, int left, int right) {
+  FrameBuffer frame = SampleWorld::get().frame(index, sequence);
+  for (int v = 0; v < frame.gray.height; ++v) {
+    for (int u = 0; u < frame.gray.width; ++u) {
+      const bool is_inside = u >= left && u < right && v >= 72 && v < 172;
+      if (!is_inside) frame.gray.pixels[static_cast<std::size_t>(v * frame.gray.width + u)] = 0;
+    }
+  }
+  return frame;
+}
+
+// A place that looked like another one a moment ago is not believed just because the rival is not in view any more.
+TEST_F(StateMachine, AThinFixIsNotBelievedRightAfterAnAmbiguousOne) {
+  constexpr std::uint64_t kIndex = 20;
+  const testing::MapOnDisk map(with_copy_of_left_half(kIndex));
+  ASSERT_NE(map.view, nullptr);
+  Localizer localizer(*map.view, world_.camera(), {});
+  const auto whole = [&](std::uint64_t sequence) { return localizer.process(world_.frame(kIndex, sequence).view()); };
+  const auto left_half = [&](std::uint64_t sequence) { return localizer.process(window(kIndex, sequence, 5, 150).view()); };
+  const auto right_half = [&](std::uint64_t sequence) { return localizer.process(window(kIndex, sequence, 208, 308).view()); };
+
+  ASSERT_EQ(whole(1).state, State::kLocalized);
+  const Localization alone = right_half(37);   // 1.2 s later
+  EXPECT_EQ(alone.state, State::kLocalized);
+  EXPECT_LT(alone.num_inliers, VerificationOptions{}.strong_inliers);
+
+  localizer.reset();
+  ASSERT_EQ(whole(41).state, State::kLocalized);
+  EXPECT_EQ(left_half(76).reason, Reason::kAmbiguous);
+  EXPECT_EQ(right_half(77).reason, Reason::kAmbiguous);
+  EXPECT_EQ(right_half(105).reason, Reason::kAmbiguous);
+  EXPECT_EQ(right_half(120).state, State::kLocalized) << "1.5 s are enough";
+}
+
+// Much evidence, or a motion that is known, needs no patience.
+TEST_F(StateMachine, AStrongFixIsBelievedRightAfterAnAmbiguousOne) {
+  constexpr std::uint64_t kIndex = 20;
+  const testing::MapOnDisk map(with_copy_of_left_half(kIndex));
+  ASSERT_NE(map.view, nullptr);
+  Localizer localizer(*map.view, world_.camera(), {});
+  ASSERT_EQ(localizer.process(world_.frame(kIndex, 1).view()).state, State::kLocalized);
+  EXPECT_EQ(localizer.process(window(kIndex, 37, 5, 150).view()).reason, Reason::kAmbiguous);
+  EXPECT_EQ(localizer.process(world_.frame(kIndex, 38).view()).state, State::kLocalized);
 }
 
 TEST_F(StateMachine, TracksOnAfterAShortGap) {
