@@ -97,13 +97,13 @@ FrameBuffer window(std::uint64_t index, std::uint64_t sequence, int left, int ri
 
 // A place that looked like another one a moment ago is not believed just because the rival is not in view any more.
 TEST_F(StateMachine, AThinFixIsNotBelievedRightAfterAnAmbiguousOne) {
-  constexpr std::uint64_t kIndex = 20;
-  const testing::MapOnDisk map(with_copy_of_left_half(kIndex));
+  constexpr std::uint64_t kSeen = 20;
+  const testing::MapOnDisk map(with_copy_of_left_half(kSeen));
   ASSERT_NE(map.view, nullptr);
   Localizer localizer(*map.view, world_.camera(), {});
-  const auto whole = [&](std::uint64_t sequence) { return localizer.process(world_.frame(kIndex, sequence).view()); };
-  const auto left_half = [&](std::uint64_t sequence) { return localizer.process(window(kIndex, sequence, 5, 150).view()); };
-  const auto right_half = [&](std::uint64_t sequence) { return localizer.process(window(kIndex, sequence, 208, 308).view()); };
+  const auto whole = [&](std::uint64_t sequence) { return localizer.process(world_.frame(kSeen, sequence).view()); };
+  const auto left_half = [&](std::uint64_t sequence) { return localizer.process(window(kSeen, sequence, 5, 150).view()); };
+  const auto right_half = [&](std::uint64_t sequence) { return localizer.process(window(kSeen, sequence, 208, 308).view()); };
 
   ASSERT_EQ(whole(1).state, State::kLocalized);
   const Localization alone = right_half(37);   // 1.2 s later
@@ -120,13 +120,13 @@ TEST_F(StateMachine, AThinFixIsNotBelievedRightAfterAnAmbiguousOne) {
 
 // Much evidence, or a motion that is known, needs no patience.
 TEST_F(StateMachine, AStrongFixIsBelievedRightAfterAnAmbiguousOne) {
-  constexpr std::uint64_t kIndex = 20;
-  const testing::MapOnDisk map(with_copy_of_left_half(kIndex));
+  constexpr std::uint64_t kSeen = 20;
+  const testing::MapOnDisk map(with_copy_of_left_half(kSeen));
   ASSERT_NE(map.view, nullptr);
   Localizer localizer(*map.view, world_.camera(), {});
-  ASSERT_EQ(localizer.process(world_.frame(kIndex, 1).view()).state, State::kLocalized);
-  EXPECT_EQ(localizer.process(window(kIndex, 37, 5, 150).view()).reason, Reason::kAmbiguous);
-  EXPECT_EQ(localizer.process(world_.frame(kIndex, 38).view()).state, State::kLocalized);
+  ASSERT_EQ(localizer.process(world_.frame(kSeen, 1).view()).state, State::kLocalized);
+  EXPECT_EQ(localizer.process(window(kSeen, 37, 5, 150).view()).reason, Reason::kAmbiguous);
+  EXPECT_EQ(localizer.process(world_.frame(kSeen, 38).view()).state, State::kLocalized);
 }
 
 TEST_F(StateMachine, TracksOnAfterAShortGap) {
