@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/base/mix_bits.h"
 #include "core/map/pose_consistency.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
+#include "core/base/mix_bits.h"
 #include "core/base/order_statistics.h"
 #include "core/features/matcher.h"
 #include "core/geometry/correspondences.h"
@@ -18,7 +18,6 @@ namespace {
 
 constexpr double kMinInlierRatio = 0.3;
 
-// Mixing function of SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
 /// Registers one view to another: the depth points of `from` are the map, the pixels of `to` are the query.
 class Registration {
  public:

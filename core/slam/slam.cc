@@ -131,9 +131,8 @@ std::uint32_t Slam::add_bridged_keyframe(std::uint64_t frame, ViewFeatures view,
   const std::uint32_t segment = map_.keyframe(before).segment;
   const std::uint32_t keyframe = insert_keyframe(frame, segment, view, {}, &map_);
   std::vector<std::uint32_t> nearby;
-  for (std::uint32_t k = last; k + kBridgedNeighbours > last && map_.keyframe(k).segment == segment; --k) {
-    nearby.push_back(k);
-    if (k == 0) break;
+  for (std::uint32_t back = 0; back < std::min(kBridgedNeighbours, last + 1); ++back) {
+    if (map_.keyframe(last - back).segment == segment) nearby.push_back(last - back);
   }
   LandmarkSet landmarks;
   landmarks.assign(map_, nearby, options_.tracker.max_local_landmarks);
@@ -285,26 +284,36 @@ void Slam::refine_all_sightings() {
 }
 
 // Dense links are depth, too.
-MapEvidence Slam::evidence(std::span<const ControlLandmark> controls) const {
-  return {controls, options_.use_depth_in_adjustment ? links_.links() : std::span<const PoseGraphEdge>()};
+MapEvidence Slam::evidence(std::uint32_t segment) const {
+  MapEvidence evidence;
+  if (segment == controlled_segment_) evidence.controls = controls_;
+  if (options_.use_depth_in_adjustment) evidence.links = links_.links();
+  return evidence;
 }
 
 SlamResult Slam::finish(const BundleCallback& on_iteration) {
   join_leftover_segments();
   refine_all_sightings();
   fits_.clear();
+  controls_.clear();
   for (const SlamKeyframe& keyframe : map_.keyframes()) fits_[keyframe.segment];
   for (auto& [segment, fit] : fits_)
-    fit = adjust_globally(bundle_options(), segment, evidence({}), options_.max_pixel_sigmas, &map_, on_iteration);
+    fit = adjust_globally(bundle_options(), segment, evidence(segment), options_.max_pixel_sigmas, &map_, on_iteration);
   return result();
 }
 
 SlamResult Slam::adjust_to(std::span<const ControlLandmark> controls, const BundleCallback& on_iteration) {
   if (!controls.empty() && !controls.front().seen.empty()) {
     const std::uint32_t segment = map_.keyframe(controls.front().seen.front().keyframe).segment;
-    fits_[segment] = adjust_globally(bundle_options(), segment, evidence(controls), options_.max_pixel_sigmas, &map_, on_iteration);
+    controls_.assign(controls.begin(), controls.end());
+    controlled_segment_ = segment;
+    fits_[segment] = adjust_globally(bundle_options(), segment, evidence(segment), options_.max_pixel_sigmas, &map_, on_iteration);
   }
   return result();
+}
+
+MapUncertainty Slam::uncertainty(std::uint32_t segment) const {
+  return estimate_uncertainty(options_.uncertainty, bundle_options(), extract_segment(segment, evidence(segment), map_));
 }
 
 std::optional<std::uint32_t> Slam::keyframe_of_frame(std::uint64_t frame) const {

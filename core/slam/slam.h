@@ -20,6 +20,7 @@
 #include "core/slam/far_landmarks.h"
 #include "core/slam/loop_closing.h"
 #include "core/slam/map_adjustment.h"
+#include "core/slam/map_uncertainty.h"
 #include "core/slam/patch_alignment.h"
 #include "core/slam/place_index.h"
 #include "core/slam/slam_map.h"
@@ -48,6 +49,7 @@ struct SlamOptions {
   std::vector<std::uint64_t> required_keyframes;   ///< frames that become keyframes whatever they show, ascending
   bool refine_sightings = true;        ///< to a fraction of a pixel before the final adjustment, where views have patches
   PatchAlignmentOptions patches;
+  MapUncertaintyOptions uncertainty;
   double max_pixel_sigmas = 2.45;      ///< sightings farther off after the final adjustment are removed
 };
 
@@ -87,6 +89,7 @@ struct SlamResult {
     std::uint32_t id = 0;
     std::uint32_t num_keyframes = 0, num_views = 0;
     MapFit fit;
+    MapUncertainty uncertainty;         ///< only where Slam::uncertainty() was asked
   };
   std::vector<Segment> segments;        ///< most views first
 };
@@ -109,6 +112,8 @@ class Slam {
   [[nodiscard]] SlamResult finish(const BundleCallback& on_iteration = {});
   /// Adjusts the segment of the first control landmark's keyframe once more, held by surveyed points; after finish().
   [[nodiscard]] SlamResult adjust_to(std::span<const ControlLandmark> controls, const BundleCallback& on_iteration = {});
+  /// How much the poses of a segment may be bent, after the last adjustment. Costs about as much as that.
+  [[nodiscard]] MapUncertainty uncertainty(std::uint32_t segment) const;
 
  private:
   /// A tracked view, relative to a keyframe, with what it saw: enough to refine it once the landmarks are final.
@@ -139,7 +144,7 @@ class Slam {
   void count(const LoopReport& loop);
   void remember(std::uint64_t frame, const ViewFeatures& view, const Registration& tracked, bool is_keyframe);
   [[nodiscard]] BundleOptions bundle_options() const;
-  [[nodiscard]] MapEvidence evidence(std::span<const ControlLandmark> controls) const;
+  [[nodiscard]] MapEvidence evidence(std::uint32_t segment) const;
   [[nodiscard]] SlamResult result() const;
   [[nodiscard]] Rigid3 final_pose(const TrackedView& view) const;
 
@@ -159,6 +164,8 @@ class Slam {
   DepthWeight depth_weight_;
   std::vector<TrackedView> tracked_;
   std::map<std::uint32_t, MapFit> fits_;   ///< of the segments, after finish()
+  std::vector<ControlLandmark> controls_;  ///< of one segment, after adjust_to()
+  std::uint32_t controlled_segment_ = 0;
   SlamCounts counts_;
   int num_lost_in_a_row_ = 0;
 };

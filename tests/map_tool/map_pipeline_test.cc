@@ -6,7 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/geometry/alignment.h"
+#include "core/map/map_view.h"
 #include "drivers/sequence.h"
 #include "tests/drivers/test_folder.h"
 #include "tests/map_tool/recorded_room.h"
@@ -64,6 +67,15 @@ TEST(MapPipeline, AWalkBecomesAMapAndATrajectory) {
   for (std::uint64_t i = 0; i < kFrames; ++i)
     pairs.push_back({.p_a = room_pose(i).translation, .p_b = trajectory.value()[i].T_world_camera.translation});
   EXPECT_LT(align_rigid(pairs).rms_m, 0.01);
+
+  // Poses found in the map say how much it is bent.
+  const auto map = MapView::open(folder / "room.cmap");
+  ASSERT_TRUE(map.is_ok());
+  EXPECT_GT(summary.bend.sigma_m, 0.0001);
+  EXPECT_LT(summary.bend.sigma_m, 0.01);
+  EXPECT_NEAR(map->info().pose_sigma_m, std::hypot(summary.bend.sigma_m, summary.consistency_sigma_m), 1e-12);
+  EXPECT_NEAR(map->info().pose_sigma_rad, std::hypot(summary.bend.sigma_rad, summary.consistency_sigma_rad), 1e-12);
+  EXPECT_NE(format_table(summary).find("bend of the map"), std::string::npos);
 }
 
 /// The log of a whole build, as a build that died just before its end would have left it.
@@ -157,8 +169,8 @@ TEST(MapPipeline, BrokenImagesAreLeftOutAndNamed) {
   BuildSummary summary;
   const Status built = build(request_for(folder / "walk", folder / "room.cmap"), &summary);
   ASSERT_TRUE(built.is_ok()) << built.message();
-  EXPECT_EQ(summary.num_broken, 2U);
-  EXPECT_NE(summary.first_broken.find("rgb/1010.png"), std::string::npos) << summary.first_broken;
+  EXPECT_EQ(summary.reading.num_corrupt, 2U);
+  EXPECT_NE(summary.reading.first_corrupt.find("rgb/1010.png"), std::string::npos) << summary.reading.first_corrupt;
   EXPECT_EQ(summary.build.num_frames, kFrames - 2);
 }
 

@@ -164,7 +164,7 @@ camloc::Status bench(const BenchArguments& arguments) {
     camloc::bench::ReferenceOptions reference_options;
     reference_options.is_tracking = !arguments.run.is_single;
     camloc::bench::OpencvReference reference(*run->map, run->camera, reference_options, clock);
-    const auto counts = camloc::tools::for_each_frame(*run, [&](const camloc::Frame& frame) {
+    const auto counts = camloc::tools::read_perturbed_frames(*run, [&](const camloc::Frame& frame) {
       record(localizer.process(frame), &contestants[0]);
       if (arguments.has_reference) record(reference.process(frame), frame.stamp_ns, &contestants[1]);
     });

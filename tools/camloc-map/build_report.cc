@@ -98,7 +98,7 @@ std::string format_table(const BuildSummary& s) {
   append_text(&text, "%-22s%u of %llu recorded, %llu selected\n", "frames used", b.num_frames, count(s.num_recorded),
          count(s.num_selected));
   append_text(&text, "%-22s%llu without pose, %llu without depth, %llu broken\n", "frames skipped", count(s.num_without_pose),
-         count(s.num_without_depth), count(s.num_broken));
+         count(s.num_without_depth), count(s.reading.num_corrupt));
   if (s.slam) append_slam(s, &text);
   if (s.model_scale) append_text(&text, "%-22s%s\n", "scale of the model", describe_scale(*s.model_scale).c_str());
   append_text(&text, "%-22s%llu\n", "observations", count(b.num_observations));
@@ -107,9 +107,13 @@ std::string format_table(const BuildSummary& s) {
   append_text(&text, "%-22s%u of %u views cover all landmarks\n", "keyframes", b.num_keyframes, b.num_keyframes_before);
   append_text(&text, "%-22s%u\n", "words", b.num_words);
   append_text(&text, "%-22s%llu bytes, %.1f a landmark\n", "size", count(b.file_bytes), bytes_per_landmark(s));
+  if (s.bend.sigma_m > 0) {
+    append_text(&text, "%-22s%.1f cm, %.2f deg per axis (maps of half of the sightings differ by twice that)\n", "bend of the map",
+                100 * s.bend.sigma_m, degrees(s.bend.sigma_rad));
+  }
   if (b.num_consistency_pairs > 0) {
-    append_text(&text, "%-22s%.1f cm, %.2f deg per axis between views (%u pairs)\n", "pose inconsistency", 100 * s.pose_sigma_m,
-           degrees(s.pose_sigma_rad), b.num_consistency_pairs);
+    append_text(&text, "%-22s%.1f cm, %.2f deg per axis between views (%u pairs)\n", "pose inconsistency", 100 * s.consistency_sigma_m,
+           degrees(s.consistency_sigma_rad), b.num_consistency_pairs);
   } else {
     append_text(&text, "%-22sunknown: no two views see the same place at different times\n", "pose inconsistency");
   }
@@ -129,7 +133,7 @@ std::string format_json(const BuildSummary& s) {
   json["sequence"] = s.sequence;
   json["camera"] = s.camera;
   json["frames"] = {{"recorded", s.num_recorded},         {"selected", s.num_selected},           {"used", b.num_frames},
-                    {"without_pose", s.num_without_pose}, {"without_depth", s.num_without_depth}, {"broken", s.num_broken}};
+                    {"without_pose", s.num_without_pose}, {"without_depth", s.num_without_depth}, {"broken", s.reading.num_corrupt}};
   json["is_partial"] = s.is_partial;
   if (s.slam) json["slam"] = slam_json(*s.slam);
   if (s.model_scale) {
@@ -149,7 +153,9 @@ std::string format_json(const BuildSummary& s) {
   json["bytes"] = b.file_bytes;
   json["bytes_per_landmark"] = bytes_per_landmark(s);
   json["pose_consistency"] = {
-      {"pairs", b.num_consistency_pairs}, {"sigma_m", s.pose_sigma_m}, {"sigma_deg", degrees(s.pose_sigma_rad)}};
+      {"pairs", b.num_consistency_pairs}, {"sigma_m", s.consistency_sigma_m}, {"sigma_deg", degrees(s.consistency_sigma_rad)}};
+  json["bend"] = nullptr;
+  if (s.bend.sigma_m > 0) json["bend"] = {{"sigma_m", s.bend.sigma_m}, {"sigma_deg", degrees(s.bend.sigma_rad)}};
   if (s.merge) json["merge"] = nlohmann::ordered_json::parse(format_json(*s.merge), nullptr, false);
   json["seconds"] = s.seconds;
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";

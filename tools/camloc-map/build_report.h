@@ -17,6 +17,7 @@
 #include "tools/camloc-map/georef_report.h"
 #include "tools/camloc-map/merge_pipeline.h"
 #include "tools/camloc-map/walk_check.h"
+#include "tools/common/frame_reading.h"
 
 namespace camloc::map_tool {
 
@@ -39,8 +40,8 @@ struct SubmapSummary {
 
 struct BuildSummary {
   std::string map_path, sequence, camera;
-  std::uint64_t num_recorded = 0, num_selected = 0, num_without_pose = 0, num_without_depth = 0, num_broken = 0;
-  std::string first_broken;  ///< what was wrong with the first broken frame
+  std::uint64_t num_recorded = 0, num_selected = 0, num_without_pose = 0, num_without_depth = 0;
+  tools::FrameCounts reading;   ///< broken frames, and what was wrong with the first of them
   bool is_partial = false;   ///< interrupted: a map of the first part
   std::optional<SlamSummary> slam;
   std::optional<ModelScale> model_scale;  ///< of the COLMAP model that the poses are from
@@ -48,7 +49,8 @@ struct BuildSummary {
   std::vector<SubmapSummary> submaps;   ///< besides the map itself
   MapBuildReport build;
   std::optional<MergeSummary> merge;   ///< with the map that was extended; `build` then counts the recording alone
-  double pose_sigma_m = 0, pose_sigma_rad = 0;
+  double consistency_sigma_m = 0, consistency_sigma_rad = 0;   ///< of the poses between views, per axis
+  MapUncertainty bend;                 ///< of a map without given poses
   double seconds = 0;
 };
 

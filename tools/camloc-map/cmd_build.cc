@@ -68,9 +68,9 @@ int run(BuildArguments arguments) {
   if (const Status built = build_map(request, &summary); !built.is_ok()) {
     return report_error(built, built.code() == ErrorCode::kInvalid ? 2 : 1);
   }
-  if (summary.num_broken > 0) {
-    tools::print_error("camloc-map", std::to_string(summary.num_broken) + " of " + std::to_string(summary.num_selected) +
-                                         " frames left out because they could not be read, the first: " + summary.first_broken);
+  if (summary.reading.num_corrupt > 0) {
+    tools::print_error("camloc-map", std::to_string(summary.reading.num_corrupt) + " of " + std::to_string(summary.num_selected) +
+                                         " frames left out because they could not be read, the first: " + summary.reading.first_corrupt);
   }
   if (summary.survey && !summary.survey->is_written) {
     tools::print_error("camloc-map", request.survey.points_path + ": " + summary.survey->fit.problem +

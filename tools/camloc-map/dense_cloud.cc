@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/camloc-map/dense_cloud.h"
 
-#include <chrono>
 #include <cmath>
 #include <memory>
 
 #include "drivers/frame_source.h"
+#include "tools/common/frame_reading.h"
 
 namespace camloc::map_tool {
 namespace {
@@ -44,21 +44,18 @@ Result<PointCloud> fuse_dense_cloud(const PosedFrames& frames, const RgbdCamera&
   auto source = open_frame_source(frames.url);
   if (!source.is_ok()) return source.status();
   CloudAccumulator accumulator({options.voxel_m, 1, options.min_points});
-  FrameBuffer buffer;
-  for (std::uint64_t done = 0;;) {
-    const Status status = source.value()->next(&buffer, std::chrono::milliseconds(1000));
-    if (status.code() == ErrorCode::kEnd) break;
-    if (status.code() == ErrorCode::kTimeout) continue;
+  const Intrinsics& lens = camera.is_depth_registered ? camera.color : camera.depth;
+  std::uint64_t done = 0;
+  const auto add = [&](FrameBuffer& buffer) -> Status {
     if (progress && !progress(++done, frames.T_map_camera_of_frame.size()))
       return {ErrorCode::kIo, "interrupted while fusing depth images"};
-    if (status.code() == ErrorCode::kCorrupt) continue;
-    if (!status.is_ok()) return status;
     const auto pose = frames.T_map_camera_of_frame.find(buffer.sequence);
-    const Intrinsics& lens = camera.is_depth_registered ? camera.color : camera.depth;
-    if (pose == frames.T_map_camera_of_frame.end() || buffer.depth.width != lens.width || buffer.depth.height != lens.height)
-      continue;
-    add_depth_image(camera, buffer.depth.view(), pose->second, options, &accumulator);
-  }
+    const bool is_usable = buffer.depth.width == lens.width && buffer.depth.height == lens.height;
+    if (pose != frames.T_map_camera_of_frame.end() && is_usable)
+      add_depth_image(camera, buffer.depth.view(), pose->second, options, &accumulator);
+    return Status::ok();
+  };
+  if (const auto counts = tools::read_frames(*source.value(), add); !counts) return counts.status();
   PointCloud cloud = accumulator.finish();
   if (cloud.points_m.empty())
     return {ErrorCode::kInvalid, frames.folder + ": its frames give no surface; check depth images and --camera"};

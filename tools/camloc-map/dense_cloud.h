@@ -23,7 +23,7 @@ struct DenseCloudOptions {
   std::uint32_t min_points = 3;  ///< a voxel with fewer is a flying pixel
 };
 
-/// Called after every frame; false stops.
+/// Called with every frame that could be read; false stops.
 using FrameProgress = std::function<bool(std::uint64_t done, std::uint64_t total)>;
 
 /// Depth pixels at depth edges are left out. Points are in the frame of the poses. Errors: of opening the recording; kInvalid

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/camloc-map/frame_localization.h"
 
-#include <algorithm>
-#include <chrono>
 #include <optional>
 #include <set>
 
 #include "core/localize/localizer.h"
 #include "drivers/frame_source.h"
+#include "tools/common/frame_reading.h"
 
 namespace camloc::map_tool {
 namespace {
@@ -16,16 +15,6 @@ namespace {
 constexpr std::uint64_t kRunUpFrames = 10;
 
 using Frames = std::map<std::uint64_t, LocalizedFrame>;
-
-/// "start:stop" of every frame with its run-up.
-std::string selection_of(const Frames& frames) {
-  std::string text;
-  for (const auto& [index, frame] : frames) {
-    if (!text.empty()) text += ",";
-    text += std::to_string(index - std::min(index, kRunUpFrames)) + ":" + std::to_string(index + 1);
-  }
-  return text;
-}
 
 Status check_size(const FrameSourceInfo& info, const RgbdCamera& camera, const std::string& sequence_url) {
   if (info.color_width == camera.color.width && info.color_height == camera.color.height) return Status::ok();
@@ -42,39 +31,34 @@ Result<PoseWithCovariance> pose_of(const Localization& localization) {
 
 Result<Frames> localize_frames(const MapView& map, const RgbdCamera& camera, const std::string& sequence_url,
                                const std::vector<ControlObservation>& observations, const std::function<bool()>& should_stop) {
-  Frames frames;
+  std::set<std::uint64_t> wanted;
   for (const ControlObservation& observation : observations) {
-    if (observation.kind == ObservationKind::kPixel) frames[observation.frame];
+    if (observation.kind == ObservationKind::kPixel) wanted.insert(observation.frame);
   }
-  if (frames.empty()) return frames;
-  const std::string separator = sequence_url.find('?') == std::string::npos ? "?" : "&";
-  auto source = open_frame_source(sequence_url + separator + "frames=" + selection_of(frames));
+  Frames frames;
+  if (wanted.empty()) return frames;
+  for (const std::uint64_t frame : wanted) frames[frame];
+  auto source = open_frame_source(tools::with_selection(sequence_url, tools::selection_of(wanted, kRunUpFrames)));
   if (!source) return source.status();
   if (const Status status = check_size(source.value()->info(), camera, sequence_url); !status) return status;
 
   Localizer localizer(map, camera, LocalizerOptions{});
   const DepthLookup lookup(camera);
-  FrameBuffer buffer;
   std::optional<std::uint64_t> previous;
-  while (!should_stop()) {
-    const Status status = source.value()->next(&buffer, std::chrono::milliseconds(1000));
-    if (status.code() == ErrorCode::kEnd) return frames;
-    if (status.code() == ErrorCode::kTimeout) continue;
-    if (status.code() == ErrorCode::kCorrupt) {
-      const auto found = frames.find(buffer.sequence);
-      if (found != frames.end()) found->second.T_map_camera = status;
-      continue;
-    }
-    if (!status) return status;
+  const auto localize = [&](FrameBuffer& buffer) {
     if (previous && buffer.sequence != *previous + 1) localizer.reset();
     previous = buffer.sequence;
     const Localization& localization = localizer.process(buffer.view());
-    const auto found = frames.find(buffer.sequence);
-    if (found == frames.end()) continue;
-    found->second.T_map_camera = pose_of(localization);
-    measure_pixels(observations, camera, lookup, buffer.view(), &found->second.measurements);
-  }
-  return Status(ErrorCode::kIo, "interrupted; nothing was written");
+    if (const auto found = frames.find(buffer.sequence); found != frames.end()) {
+      found->second.T_map_camera = pose_of(localization);
+      measure_pixels(observations, camera, lookup, buffer.view(), &found->second.measurements);
+    }
+    return Status::ok();
+  };
+  const auto counts = tools::read_frames(*source.value(), localize, should_stop);
+  if (!counts) return counts.status();
+  if (should_stop()) return Status(ErrorCode::kIo, "interrupted; nothing was written");
+  return frames;
 }
 
 }  // namespace camloc::map_tool

@@ -18,7 +18,7 @@ namespace camloc::map_tool {
 
 /// What one frame had to say. Errors are reasons for people.
 struct LocalizedFrame {
-  Result<PoseWithCovariance> T_map_camera = Status(ErrorCode::kNotFound, "the recording has no such frame");
+  Result<PoseWithCovariance> T_map_camera = Status(ErrorCode::kNotFound, "the recording has no such frame, or it cannot be read");
   PixelMeasurements measurements;
 };
 

@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <unordered_map>
 
 #include "core/map/map_writer.h"
-#include "drivers/frame_source.h"
 #include "tools/camloc-map/merge_pipeline.h"
 #include "tools/camloc-map/view_log.h"
 #include "tools/camloc-map/walk_tracking.h"
+#include "tools/common/frame_reading.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/progress_line.h"
 #include "tools/common/trajectory_file.h"
@@ -27,11 +28,6 @@ constexpr std::uint32_t kMinSegmentKeyframes = 4;   // a shorter stretch is no s
 Status interrupted_status(const std::string& map_path) {
   const bool is_there = std::filesystem::exists(map_path);
   return {ErrorCode::kIo, "interrupted; " + map_path + (is_there ? " is unchanged" : " was not written")};
-}
-
-Status all_broken_status(const BuildSummary& summary) {
-  return {ErrorCode::kCorrupt, "none of " + std::to_string(summary.num_broken) + " frames could be read, the first because of " +
-                                   summary.first_broken};
 }
 
 std::string folder_name(const std::string& folder) {
@@ -61,17 +57,20 @@ Status extend_map(const BuildRequest& request, const MapData& recorded, BuildSum
 }
 
 Status finish_map(const BuildRequest& request, const std::string& name, const std::string& path, const std::optional<WcsDatum>& datum,
-                  MapBuilder* builder, BuildSummary* summary) {
+                  const MapUncertainty& bend, MapBuilder* builder, BuildSummary* summary) {
   auto map = builder->finish(&summary->build);
   if (!map.is_ok()) return map.status();
+  summary->consistency_sigma_m = map->pose_sigma_m;
+  summary->consistency_sigma_rad = map->pose_sigma_rad;
+  summary->bend = bend;
+  map->pose_sigma_m = std::hypot(map->pose_sigma_m, bend.sigma_m);
+  map->pose_sigma_rad = std::hypot(map->pose_sigma_rad, bend.sigma_rad);
   map->name = name;
   map->wcs = datum;
   const bool is_extension = !request.extend_path.empty() && path == request.map_path;
   const Status written = is_extension ? extend_map(request, map.value(), summary) : write_map(map.value(), path);
   if (!written.is_ok()) return written;
   summary->map_path = path;
-  summary->pose_sigma_m = map->pose_sigma_m;
-  summary->pose_sigma_rad = map->pose_sigma_rad;
   return Status::ok();
 }
 
@@ -81,25 +80,18 @@ Status finish_map(const BuildRequest& request, const std::string& name, const st
 Status add_frames(const PosedFrames& frames, MapBuilder* builder, BuildSummary* summary, ProgressLine* progress) {
   auto source = open_frame_source(frames.url);
   if (!source.is_ok()) return source.status();
-  FrameBuffer buffer;
-  for (std::uint64_t done = 0; !InterruptGuard::is_interrupted();) {
-    const Status status = source.value()->next(&buffer, std::chrono::milliseconds(1000));
-    if (status.code() == ErrorCode::kEnd) return Status::ok();
-    if (status.code() == ErrorCode::kTimeout) continue;
+  std::uint64_t done = 0;
+  const auto add = [&](FrameBuffer& buffer) {
     progress->show(++done, std::to_string(builder->progress().num_landmarks_before) + " landmarks");
-    if (status.code() == ErrorCode::kCorrupt) {
-      if (summary->num_broken++ == 0) summary->first_broken = status.message();
-      continue;
-    }
-    if (!status.is_ok()) return status;
     const auto pose = frames.T_map_camera_of_frame.find(buffer.sequence);
-    if (pose == frames.T_map_camera_of_frame.end()) continue;
-    if (buffer.depth.pixels.empty() || buffer.depth.width == 0) {
-      ++summary->num_without_depth;
-      continue;
-    }
-    if (const Status added = builder->add_frame(buffer.view(), pose->second); !added.is_ok()) return added;
-  }
+    if (pose == frames.T_map_camera_of_frame.end()) return Status::ok();
+    if (!buffer.depth.pixels.empty() && buffer.depth.width > 0) return builder->add_frame(buffer.view(), pose->second);
+    ++summary->num_without_depth;
+    return Status::ok();
+  };
+  auto counts = tools::read_frames(*source.value(), add, InterruptGuard::is_interrupted);
+  if (!counts) return counts.status();
+  summary->reading = std::move(counts).value();
   return Status::ok();
 }
 
@@ -114,9 +106,10 @@ Status build_from_poses(const BuildRequest& request, BuildSummary* summary) {
   ProgressLine progress(frames->T_map_camera_of_frame.size());
   if (const Status added = add_frames(frames.value(), &builder, summary, &progress); !added.is_ok()) return added;
   if (InterruptGuard::is_interrupted()) return interrupted_status(request.map_path);
-  if (summary->num_broken == frames->T_map_camera_of_frame.size()) return all_broken_status(*summary);
+  if (summary->reading.are_all_corrupt()) return tools::all_frames_corrupt(summary->reading);
   progress.say("choosing landmarks and keyframes, training words ...");
-  return finish_map(request, request.name.empty() ? folder_name(frames->folder) : request.name, request.map_path, std::nullopt, &builder, summary);
+  return finish_map(request, request.name.empty() ? folder_name(frames->folder) : request.name, request.map_path, std::nullopt, {}, &builder,
+                    summary);
 }
 
 // --- SLAM finds the poses --------------------------------------------------------------------------------------------
@@ -159,16 +152,15 @@ Status find_poses(const BuildRequest& request, Slam* slam, Walk* walk, BuildSumm
   if (walk->end.is_interrupted && !request.extend_path.empty())
     return interrupted_status(request.map_path);
   summary->is_partial = walk->end.is_interrupted;
-  summary->num_broken = walk->end.num_broken;
+  summary->reading = walk->end.reading;
   summary->num_without_depth = walk->end.num_without_depth;
-  summary->first_broken = walk->end.first_broken;
   const ProgressLine progress(0, "adjusting");
   walk->result = slam->finish([&](int iteration, double) {
     progress.say("adjusting all keyframes and landmarks, iteration " + std::to_string(iteration) + " ...");
     return true;
   });
   Status usable = check.verdict(walk->result);
-  if (summary->num_broken == walk->frames.num_selected) usable = all_broken_status(*summary);
+  if (summary->reading.are_all_corrupt()) usable = tools::all_frames_corrupt(summary->reading);
   if (usable.is_ok() && walk->result.segments.empty())
     usable = {ErrorCode::kInvalid, request.frames.sequence + ": no frame shows enough texture with depth to begin a map"};
   if (!usable.is_ok()) {
@@ -202,6 +194,14 @@ Status place_walk(const BuildRequest& request, Slam* slam, Walk* walk, BuildSumm
   return Status::ok();
 }
 
+/// What every pose in the maps will be uncertain by.
+void measure_bend(const Slam& slam, SlamResult* result) {
+  ProgressLine(0, "adjusting").say("comparing maps of half of the sightings each ...");
+  for (SlamResult::Segment& segment : result->segments) {
+    if (segment.num_keyframes >= kMinSegmentKeyframes) segment.uncertainty = slam.uncertainty(segment.id);
+  }
+}
+
 /// The second pass: what was seen, from where it was seen, becomes a map.
 Status map_segment(const BuildRequest& request, const Walk& walk, std::size_t number, BuildSummary* summary) {
   std::unordered_map<std::uint64_t, const SlamPose*> pose_of_frame;
@@ -227,7 +227,8 @@ Status map_segment(const BuildRequest& request, const Walk& walk, std::size_t nu
   }
   progress.say("choosing landmarks and keyframes, training words ...");
   const std::string name = request.name.empty() ? folder_name(walk.frames.folder) : request.name;
-  return finish_map(request, name, segment_path(request.map_path, number), number == 0 ? walk.datum : std::nullopt, &builder, summary);
+  return finish_map(request, name, segment_path(request.map_path, number), number == 0 ? walk.datum : std::nullopt,
+                    walk.result.segments[number].uncertainty, &builder, summary);
 }
 
 /// One map a segment, the largest at the path the user asked for. Returns an error only for that one.
@@ -266,6 +267,7 @@ Status build_from_walk(const BuildRequest& request, BuildSummary* summary) {
     Slam slam(request.camera, walk.pass.slam);   // gone before the map takes its place in memory
     if (const Status found = find_poses(request, &slam, &walk, summary); !found.is_ok()) return found;
     if (const Status placed = place_walk(request, &slam, &walk, summary); !placed.is_ok()) return placed;
+    measure_bend(slam, &walk.result);
   }
   if (const Status written = write_segments(request, walk, summary); !written.is_ok()) return written;
   if (const Status written = write_trajectory(request, walk.result, summary->slam->counts.num_views); !written.is_ok()) return written;

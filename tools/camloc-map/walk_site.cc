@@ -3,13 +3,13 @@
 #include "tools/camloc-map/walk_site.h"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <set>
 #include <unordered_map>
 
 #include "drivers/accelerometer.h"
 #include "drivers/frame_source.h"
+#include "tools/common/frame_reading.h"
 
 namespace camloc::map_tool {
 namespace {
@@ -135,18 +135,15 @@ Result<Survey> read_survey(const SurveyRequest& request, const std::string& fold
     return {ErrorCode::kInvalid, request.observed_path + ":" + std::to_string(o.line) +
                                      ": a build knows pixels of frames only; take this point to 'camloc map georef' afterwards"};
   }
-  std::string slices;
-  for (const std::uint64_t frame : frames_of(survey))
-    slices += (slices.empty() ? "" : ",") + std::to_string(frame) + ":" + std::to_string(frame + 1);
-  auto source = open_frame_source("replay://" + folder + "?frames=" + slices);
+  const std::vector<std::uint64_t> frames = frames_of(survey);
+  auto source = open_frame_source(tools::with_selection("replay://" + folder, tools::selection_of({frames.begin(), frames.end()})));
   if (!source.is_ok()) return source.status().with_context(request.observed_path);
   const DepthLookup lookup(camera);
-  FrameBuffer buffer;
-  for (;;) {
-    const Status status = source.value()->next(&buffer, std::chrono::milliseconds(1000));
-    if (status.code() == ErrorCode::kEnd) break;
-    if (status.is_ok()) measure_pixels(survey.observations, camera, lookup, buffer.view(), &survey.measurements);
-  }
+  const auto measure = [&](FrameBuffer& buffer) {
+    measure_pixels(survey.observations, camera, lookup, buffer.view(), &survey.measurements);
+    return Status::ok();
+  };
+  if (const auto counts = tools::read_frames(*source.value(), measure); !counts) return counts.status();
   for (const ControlObservation& o : survey.observations)
     survey.measurements.try_emplace(o.line, Status(ErrorCode::kNotFound, "the frame could not be read"));
   return survey;

@@ -6,11 +6,9 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 
 #include "drivers/camera_file.h"
-#include "drivers/frame_source.h"
 #include "tools/camloc-map/surface_sample.h"
 #include "tools/camloc-map/view_log.h"
 #include "tools/common/interrupt.h"
@@ -55,20 +53,15 @@ class Pass {
   Status run(ViewLogWriter log) {
     auto source = open_frame_source(request_.url);
     if (!source.is_ok()) return source.status();
-    FrameBuffer buffer;
-    while (!InterruptGuard::is_interrupted()) {
-      const Status status = source.value()->next(&buffer, std::chrono::milliseconds(1000));
-      if (status.code() == ErrorCode::kEnd) break;
-      if (status.code() == ErrorCode::kTimeout) continue;
-      if (status.code() == ErrorCode::kCorrupt) {
-        ++num_done_;
-        if (end_.num_broken++ == 0) end_.first_broken = status.message();
-        continue;
-      }
-      if (!status.is_ok()) return status;
-      if (end_.num_resumed > 0 && buffer.sequence <= last_frame_) continue;
-      if (const Status done = process(buffer.view(), &log); !done.is_ok()) return done;
-    }
+    auto counts = tools::read_frames(
+        *source.value(),
+        [&](FrameBuffer& frame) {
+          const bool is_known = end_.num_resumed > 0 && frame.sequence <= last_frame_;
+          return is_known ? Status::ok() : process(frame.view(), &log);
+        },
+        InterruptGuard::is_interrupted);
+    if (!counts.is_ok()) return counts.status();
+    end_.reading = std::move(counts).value();
     end_.is_interrupted = InterruptGuard::is_interrupted();
     return log.flush();
   }

@@ -14,6 +14,7 @@
 #include "core/geometry/camera.h"
 #include "core/slam/slam.h"
 #include "tools/camloc-map/walk_check.h"
+#include "tools/common/frame_reading.h"
 
 namespace camloc::map_tool {
 
@@ -38,9 +39,8 @@ struct WalkEnd {
   std::vector<KeyframeSurface> surfaces;
   bool is_interrupted = false;        ///< Ctrl-C: what is there is a map of the first part
   std::uint64_t num_resumed = 0;      ///< views that came from the log
-  std::uint64_t num_broken = 0;       ///< frames that could not be read
+  tools::FrameCounts reading;         ///< of this pass, without what came from the log
   std::uint64_t num_without_depth = 0;   ///< colour images without a depth image
-  std::string first_broken;
 };
 
 /// What makes a log belong to a build.

@@ -8,14 +8,14 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/base/order_statistics.h"
 #include "drivers/camera_file.h"
-#include "drivers/frame_source.h"
 #include "tools/camloc/commands.h"
 #include "tools/camloc/epipolar_error.h"
 #include "tools/camloc/recorded_poses.h"
-#include "tools/camloc/sequence_run.h"
+#include "tools/common/frame_reading.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/progress_line.h"
 #include "tools/common/trajectory_file.h"
@@ -77,43 +77,39 @@ void add_poses(const EstimatedTrajectory& trajectory, Views* views) {
 Result<std::string> frames_of(const std::vector<ViewPair>& pairs, const EpipolarArguments& arguments) {
   auto sequence = read_sequence(arguments.sequence_path);
   if (!sequence) return sequence.status();
-  std::map<std::int64_t, bool> is_found;
-  for (const ViewPair& pair : pairs) is_found[pair.estimated_ns] = is_found[pair.mapped_ns] = false;
-  std::string selection;
+  std::set<std::int64_t> wanted_ns;
+  for (const ViewPair& pair : pairs) wanted_ns.insert({pair.estimated_ns, pair.mapped_ns});
+  const std::size_t num_wanted = wanted_ns.size();
+  std::set<std::uint64_t> frames;
   for (std::size_t i = 0; i < sequence->frames.size(); ++i) {
-    const auto wanted = is_found.find(sequence->frames[i].stamp_ns);
-    if (wanted == is_found.end()) continue;
-    wanted->second = true;
-    selection += (selection.empty() ? "" : ",") + std::to_string(i) + ":" + std::to_string(i + 1);
+    if (wanted_ns.erase(sequence->frames[i].stamp_ns) > 0) frames.insert(i);
   }
-  const auto num_missing = std::count_if(is_found.begin(), is_found.end(), [](const auto& entry) { return !entry.second; });
-  if (num_missing == 0) return selection;
-  return Status(ErrorCode::kInvalid, arguments.sequence_path + ": has no frame at the times of " + std::to_string(num_missing) + " of " +
-                                         std::to_string(is_found.size()) + " poses: is it the recording that the trajectories are of?");
+  if (wanted_ns.empty()) return selection_of(frames);
+  return Status(ErrorCode::kInvalid, arguments.sequence_path + ": has no frame at the times of " + std::to_string(wanted_ns.size()) + " of " +
+                                         std::to_string(num_wanted) + " poses: is it the recording that the trajectories are of?");
 }
 
 Status extract_features(const std::string& selection, const EpipolarArguments& arguments, const RgbdCamera& camera, const OrbOptions& orb, Views* views) {
-  auto source = open_frame_source(with_selection(arguments.sequence_path, selection, ""));
+  auto source = open_frame_source(with_selection(arguments.sequence_path, selection));
   if (!source) return source.status();
   ViewExtractor extractor(camera, orb);
   ProgressLine progress(source.value()->info().num_frames.value_or(0));
   const InterruptGuard guard;
-  FrameBuffer buffer;
   std::uint64_t num_read = 0;
-  while (!InterruptGuard::is_interrupted()) {
-    const Status status = source.value()->next(&buffer, std::chrono::milliseconds(1000));
-    if (status.code() == ErrorCode::kEnd) return Status::ok();
-    if (status.code() == ErrorCode::kTimeout || status.code() == ErrorCode::kCorrupt) continue;
-    if (!status) return status;
+  const auto extract = [&](FrameBuffer& buffer) {
     const Frame frame = buffer.view();
-    if (const Status check = extractor.check(frame); !check) return check;
+    if (Status check = extractor.check(frame); !check) return check;
     ViewFeatures& view = (*views)[frame.stamp_ns];
     const Rigid3 T_map_camera = view.T_map_camera;
     view = extractor.extract(frame);
     view.T_map_camera = T_map_camera;
     progress.show(++num_read);
-  }
-  return {ErrorCode::kUnavailable, "interrupted"};
+    return Status::ok();
+  };
+  const auto counts = read_frames(*source.value(), extract, InterruptGuard::is_interrupted);
+  if (!counts) return counts.status();
+  if (InterruptGuard::is_interrupted()) return {ErrorCode::kUnavailable, "interrupted"};
+  return counts->are_all_corrupt() ? all_frames_corrupt(*counts) : Status::ok();
 }
 
 struct Agreement {

@@ -76,7 +76,7 @@ Json record_json(const Localization& result) {
 }
 
 void print_summary(const std::map<std::string, std::uint64_t>& states, const std::map<std::string, std::uint64_t>& reasons,
-                   const RunCounts& counts, const CalibrationHealth& calibration) {
+                   const FrameCounts& counts, const CalibrationHealth& calibration) {
   std::printf("frames      %llu\n", static_cast<unsigned long long>(counts.num_frames));
   if (counts.num_corrupt > 0) std::printf("unreadable  %llu\n", static_cast<unsigned long long>(counts.num_corrupt));
   for (const auto& [state, count] : states) std::printf("%-11s %llu\n", state.c_str(), static_cast<unsigned long long>(count));
@@ -104,7 +104,7 @@ struct RunLog {
   }
 };
 
-Json document_json(const LocalizeArguments& arguments, const RunLog& log, const RunCounts& counts, const CalibrationHealth& calibration) {
+Json document_json(const LocalizeArguments& arguments, const RunLog& log, const FrameCounts& counts, const CalibrationHealth& calibration) {
   const Json health{{"is_suspect", calibration.is_suspect}, {"focal_scale", calibration.focal_scale}, {"frames", calibration.num_frames}};
   return {{"map", arguments.run.map_path},
           {"sequence", arguments.run.sequence_url},
@@ -115,7 +115,7 @@ Json document_json(const LocalizeArguments& arguments, const RunLog& log, const 
 }
 
 /// Trajectory and records, whole files or none.
-Status write_results(const LocalizeArguments& arguments, const SequenceRun& run, const RunCounts& counts, RunLog* log) {
+Status write_results(const LocalizeArguments& arguments, const SequenceRun& run, const FrameCounts& counts, RunLog* log) {
   const CalibrationHealth& calibration = run.localizer->calibration();
   log->trajectory.num_frames = counts.num_frames;
   if (run.camera.poses_are_of_depth_camera) log->trajectory.T_color_depth = run.camera.T_color_depth;
@@ -139,7 +139,7 @@ Status localize(const LocalizeArguments& arguments) {
   const auto counts = [&] {
     ProgressLine progress(run->source->info().num_frames.value_or(0));
     std::uint64_t num_done = 0;
-    return for_each_frame(
+    return read_perturbed_frames(
         *run,
         [&](const Frame& frame) {
           log.add(run->localizer->process(frame), !arguments.json_path.empty());

@@ -92,10 +92,10 @@ void print_table(const MapView& map, double open_ms) {
   std::printf("landmarks    %u with %u descriptors in %u sub-maps\n", info.num_landmarks, info.num_descriptors, info.num_submaps);
   std::printf("keyframes    %u (the minimum set that covers all landmarks), %u words\n", info.num_keyframes, info.num_words);
   if (info.pose_sigma_m > 0) {
-    std::printf("mapping      poses of the mapping agree between views to %.1f cm and %.2f deg per axis\n", 100.0 * info.pose_sigma_m,
+    std::printf("mapping      poses of the mapping are good to %.1f cm and %.2f deg per axis; none that is found in the map is better\n", 100.0 * info.pose_sigma_m,
                 info.pose_sigma_rad * 180.0 / std::numbers::pi);
   } else {
-    std::printf("mapping      how well the poses of the mapping agree between views is not known: too few views of the same place\n");
+    std::printf("mapping      how good the poses of the mapping are is not known: too few views of the same place\n");
   }
   std::printf("camera       %s\n", info.camera.name.c_str());
   print_datum(map);

@@ -36,17 +36,6 @@ std::int64_t monotonic_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-std::string with_selection(const std::string& url, const std::string& frames, const std::string& exclude) {
-  std::string out = url;
-  const auto add = [&out](const std::string& key, const std::string& value) {
-    if (value.empty()) return;
-    out += (out.find('?') == std::string::npos ? "?" : "&") + key + "=" + value;
-  };
-  add("frames", frames);
-  add("exclude", exclude);
-  return out;
-}
-
 Result<SequenceRun> open_sequence_run(const SequenceRunOptions& options) {
   SequenceRun run;
   for (const std::string& text : options.perturbations) {
@@ -75,30 +64,21 @@ Result<SequenceRun> open_sequence_run(const SequenceRunOptions& options) {
   return run;
 }
 
-Result<RunCounts> for_each_frame(SequenceRun& run, const std::function<void(const Frame&)>& on_frame,
-                                 const std::function<bool()>& should_stop) {
-  RunCounts counts;
-  FrameBuffer buffer;
-  while (!should_stop || !should_stop()) {
-    const Status status = run.source->next(&buffer, std::chrono::milliseconds(1000));
-    if (status.code() == ErrorCode::kEnd) break;
-    if (status.code() == ErrorCode::kTimeout) continue;
-    if (status.code() == ErrorCode::kCorrupt) {
-      ++counts.num_frames;
-      if (counts.num_corrupt++ == 0) counts.first_corrupt = status.message();
-      continue;
-    }
-    if (!status) return status;
-    ++counts.num_frames;
-    apply(run.perturbations, buffer.sequence, &buffer.gray);
-    on_frame(buffer.view());
-  }
-  if (counts.num_corrupt == 0 || counts.num_corrupt < counts.num_frames) return counts;
-  return {ErrorCode::kCorrupt, "none of " + std::to_string(counts.num_frames) + " frames could be read, the first because of " +
-                                   counts.first_corrupt + "; record or copy the sequence again"};
+Result<FrameCounts> read_perturbed_frames(SequenceRun& run, const std::function<void(const Frame&)>& on_frame,
+                                          const std::function<bool()>& should_stop) {
+  auto counts = read_frames(
+      *run.source,
+      [&](FrameBuffer& frame) {
+        apply(run.perturbations, frame.sequence, &frame.gray);
+        on_frame(frame.view());
+        return Status::ok();
+      },
+      should_stop);
+  if (counts && counts->are_all_corrupt()) return all_frames_corrupt(*counts);
+  return counts;
 }
 
-void warn_of_corrupt_frames(const std::string& program, const RunCounts& counts) {
+void warn_of_corrupt_frames(const std::string& program, const FrameCounts& counts) {
   if (counts.num_corrupt == 0) return;
   print_error(program, std::to_string(counts.num_corrupt) + " of " + std::to_string(counts.num_frames) +
                            " frames could not be read and count as not localized, the first: " + counts.first_corrupt);

@@ -14,6 +14,7 @@
 #include "core/map/map_view.h"
 #include "drivers/frame_source.h"
 #include "tools/camloc/perturbation.h"
+#include "tools/common/frame_reading.h"
 
 namespace camloc::tools {
 
@@ -42,19 +43,10 @@ struct SequenceRun {
 
 [[nodiscard]] Result<SequenceRun> open_sequence_run(const SequenceRunOptions& options);
 
-struct RunCounts {
-  std::uint64_t num_frames = 0;
-  std::uint64_t num_corrupt = 0;      ///< frames that could not be decoded
-  std::string first_corrupt;          ///< what was wrong with the first of them
-};
-/// Calls `on_frame` with every decoded and perturbed frame until the source ends or `should_stop` says so, which is asked
-/// before each frame. kCorrupt where not a single frame could be decoded.
-[[nodiscard]] Result<RunCounts> for_each_frame(SequenceRun& run, const std::function<void(const Frame&)>& on_frame,
-                                               const std::function<bool()>& should_stop = nullptr);
+/// read_frames() with the perturbations applied. kCorrupt where not a single frame could be decoded.
+[[nodiscard]] Result<FrameCounts> read_perturbed_frames(SequenceRun& run, const std::function<void(const Frame&)>& on_frame,
+                                                        const std::function<bool()>& should_stop = nullptr);
 /// "3 of 60 frames could not be read ..." on stderr, in the name of `program`; nothing where there were none.
-void warn_of_corrupt_frames(const std::string& program, const RunCounts& counts);
-
-/// The source URL with a frame selection added.
-[[nodiscard]] std::string with_selection(const std::string& url, const std::string& frames, const std::string& exclude);
+void warn_of_corrupt_frames(const std::string& program, const FrameCounts& counts);
 
 }  // namespace camloc::tools
