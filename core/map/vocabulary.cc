@@ -54,22 +54,51 @@ std::vector<Descriptor> draw_seeds(std::span<const Descriptor> descriptors, std:
   return seeds;
 }
 
-// Bit-wise majority of each cluster; a tie keeps the old bit, an empty cluster its old centre.
+/// Bit k of the index as a one in byte k.
+constexpr std::array<std::uint64_t, 256> kSpreadBits = [] {
+  std::array<std::uint64_t, 256> spread{};
+  for (std::size_t byte = 0; byte < 256; ++byte) {
+    for (std::size_t bit = 0; bit < 8; ++bit) spread[byte] |= static_cast<std::uint64_t>(byte >> bit & 1U) << (8 * bit);
+  }
+  return spread;
+}();
+
+/// How many of a set of descriptors have each bit. Counts in bytes, eight at a time, until one could overflow.
+class BitCounts {
+ public:
+  void add(const Descriptor& descriptor) {
+    for (std::size_t byte = 0; byte < small_.size(); ++byte) small_[byte] += kSpreadBits[descriptor.bits[byte / 8] >> (8 * (byte % 8)) & 0xFFU];
+    ++num_;
+    if (num_ % 255 == 0) carry();
+  }
+  /// Bit-wise majority; where there is a tie, or no descriptor at all, the bits of `otherwise`.
+  Descriptor majority(const Descriptor& otherwise) {
+    carry();
+    Descriptor result = otherwise;
+    for (std::size_t bit = 0; bit < large_.size(); ++bit) {
+      const std::uint64_t mask = std::uint64_t{1} << (bit % 64);
+      if (2 * large_[bit] > num_) result.bits[bit / 64] |= mask;
+      if (2 * large_[bit] < num_) result.bits[bit / 64] &= ~mask;
+    }
+    return result;
+  }
+
+ private:
+  void carry() {
+    for (std::size_t bit = 0; bit < large_.size(); ++bit) large_[bit] += small_[bit / 8] >> (8 * (bit % 8)) & 0xFFU;
+    small_.fill(0);
+  }
+  std::array<std::uint64_t, 32> small_{};
+  std::array<std::uint64_t, 256> large_{};
+  std::uint64_t num_ = 0;
+};
+
+// Centres of the clusters.
 void move_to_majority(std::span<const Descriptor> descriptors, std::span<const NearestDescriptor> nearest,
                       std::vector<Descriptor>* words) {
-  std::vector<std::array<std::int32_t, 256>> balance(words->size());
-  for (std::size_t i = 0; i < descriptors.size(); ++i) {
-    auto& sums = balance[nearest[i].index];
-    for (std::size_t bit = 0; bit < 256; ++bit) sums[bit] += (descriptors[i].bits[bit / 64] >> (bit % 64) & 1U) != 0 ? 1 : -1;
-  }
-  for (std::size_t w = 0; w < words->size(); ++w) {
-    for (std::size_t bit = 0; bit < 256; ++bit) {
-      const std::uint64_t mask = std::uint64_t{1} << (bit % 64);
-      std::uint64_t& bits = (*words)[w].bits[bit / 64];
-      if (balance[w][bit] > 0) bits |= mask;
-      if (balance[w][bit] < 0) bits &= ~mask;
-    }
-  }
+  std::vector<BitCounts> counts(words->size());
+  for (std::size_t i = 0; i < descriptors.size(); ++i) counts[nearest[i].index].add(descriptors[i]);
+  for (std::size_t w = 0; w < words->size(); ++w) (*words)[w] = counts[w].majority((*words)[w]);
 }
 
 void remove_duplicates(std::vector<Descriptor>* words) {

@@ -36,6 +36,19 @@ TEST(Vocabulary, FindsPlantedClusters) {
   EXPECT_GE(std::count_if(nearest.begin(), nearest.end(), [](const NearestDescriptor& n) { return n.distance <= 4; }), 63);
 }
 
+TEST(Vocabulary, AWordIsTheMajorityOfManyDescriptors) {
+  std::mt19937_64 random(9);
+  const Descriptor centre = random_descriptor(random);
+  std::vector<Descriptor> descriptors;
+  for (int i = 0; i < 1001; ++i) descriptors.push_back(with_flips(centre, 100, random));
+  Descriptor majority{};
+  for (std::size_t bit = 0; bit < 256; ++bit) {
+    const auto has_bit = [bit](const Descriptor& d) { return (d.bits[bit / 64] >> (bit % 64) & 1U) != 0; };
+    if (std::count_if(descriptors.begin(), descriptors.end(), has_bit) > 500) majority.bits[bit / 64] |= std::uint64_t{1} << (bit % 64);
+  }
+  EXPECT_EQ(train_vocabulary(descriptors, 1, 3), std::vector<Descriptor>{majority});
+}
+
 TEST(Vocabulary, IterationsReduceTheDistance) {
   std::mt19937_64 random(4);
   std::vector<Descriptor> descriptors;
