@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/slam/true_keyframes.h"
 
 namespace camloc {
@@ -63,6 +65,22 @@ TEST(Slam, TracksALoopAroundARoom) {
   EXPECT_EQ(num_loops, counts.num_loops);
   EXPECT_EQ(slam.map().keyframes().size(), num_keyframes);
   EXPECT_LT(num_keyframes, 100U);
+}
+
+TEST(Slam, TellsHowMuchItsMapIsBent) {
+  const World world = testing::make_room();
+  Viewer viewer(world);
+  Slam slam(viewer.camera(), walk_options());
+  const Walk walk = walk_through(&viewer, circle(140, 0.8, 0, 2 * kPi + 0.5), &slam);
+  const SlamResult result = slam.finish();
+  ASSERT_EQ(result.segments.size(), 1U);
+  const double error_m = trajectory_error_m(result, result.segments.front().id, walk.T_world_camera) / std::sqrt(3.0);
+  const MapUncertainty bend = slam.uncertainty(result.segments.front().id);
+  EXPECT_GT(bend.sigma_m, error_m / 3);
+  EXPECT_LT(bend.sigma_m, error_m * 3);
+  EXPECT_GT(bend.sigma_rad, 0);
+  EXPECT_LT(bend.sigma_rad, 0.01);
+  EXPECT_EQ(slam.uncertainty(77).sigma_m, 0);
 }
 
 TEST(Slam, TheSameViewsGiveTheSameBits) {
