@@ -125,6 +125,22 @@ TEST(MapUncertainty, SurveyedPointsHoldAMap) {
   EXPECT_LT(estimate_uncertainty({}, world.options, held).sigma_m, 0.7 * free_m);
 }
 
+// It may be off by much in a half, but that says little about the map.
+TEST(MapUncertainty, AViewOfNextToNothingDoesNotDecide) {
+  std::mt19937 rng(5);
+  BundleWorld world = make_bundle_world(rng, room());
+  const double before_m = estimate_uncertainty({}, world.options, adjust(world).extract).sigma_m;
+  std::vector<BundleObservation> kept;
+  std::uint32_t num_of_blind = 0;
+  for (const BundleObservation& o : world.start.observations) {
+    if (o.camera != 7) kept.push_back(o);
+    else if (num_of_blind++ < 5) kept.push_back({o.camera, o.landmark, o.x, o.y, 0, o.sigma_px});
+  }
+  world.start.observations = kept;
+  const Adjusted adjusted = adjust(world);
+  EXPECT_LT(estimate_uncertainty({}, world.options, adjusted.extract).sigma_m, 1.3 * before_m);
+}
+
 TEST(MapUncertainty, ExactMeasurementsLeaveNone) {
   std::mt19937 rng(1);
   BundleWorldOptions options = room();
