@@ -43,5 +43,14 @@ TEST(EpipolarCommandTest, AnotherRecordingIsAnError) {
   EXPECT_NE(output.err.find("is it the recording"), std::string::npos) << output.err;
 }
 
+// Before a single image is read: there is none here.
+TEST(EpipolarCommandTest, OnePoseHasNoPartner) {
+  const TemporaryFolder folder;
+  const CommandOutput output = run_command(add_epipolar_command, {"epipolar", "--estimate", folder.write("e.tum", "1 0 0 0 0 0 0 1\n"), "--sequence",
+                                                                  folder / "missing", "--camera", folder.write("camera.toml", kCamera)});
+  EXPECT_EQ(output.exit_code, 1);
+  EXPECT_NE(output.err.find("no two images of these poses see the same things"), std::string::npos) << output.err;
+}
+
 }  // namespace
 }  // namespace camloc::tools

@@ -146,6 +146,10 @@ void print(const Agreement& agreement, std::size_t num_poses, bool is_json) {
   std::printf("epipolar error  median %.2f px, 90 %% below %.2f px (of the pairs' medians)\n", agreement.median_px, agreement.p90_px);
 }
 
+Status nothing_in_common(const EpipolarArguments& arguments) {
+  return {ErrorCode::kNotFound, arguments.estimate_path + ": no two images of these poses see the same things; give --mapped a walk through the same place"};
+}
+
 Status epipolar(const EpipolarArguments& arguments) {
   auto camera = read_camera_file(arguments.camera_path);
   if (!camera) return camera.status();
@@ -154,6 +158,7 @@ Status epipolar(const EpipolarArguments& arguments) {
   auto mapped = read_mapped(arguments, *camera);
   if (!mapped) return mapped.status();
   const std::vector<ViewPair> pairs = pair_views(*estimate, *mapped, arguments);
+  if (pairs.empty()) return nothing_in_common(arguments);
   const auto selection = frames_of(pairs, arguments);
   if (!selection) return selection.status();
 
@@ -164,9 +169,7 @@ Status epipolar(const EpipolarArguments& arguments) {
   if (Status status = extract_features(selection.value(), arguments, *camera, orb, &views); !status) return status;
   EpipolarMeter meter(camera->color, orb);
   const Agreement agreement = measure(pairs, views, &meter);
-  if (agreement.num_pairs == 0) {
-    return {ErrorCode::kNotFound, arguments.estimate_path + ": no two images of these poses see the same things; give --mapped a walk through the same place"};
-  }
+  if (agreement.num_pairs == 0) return nothing_in_common(arguments);
   print(agreement, estimate->poses.size(), arguments.is_json);
   return Status::ok();
 }
