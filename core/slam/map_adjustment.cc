@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/slam/map_adjustment.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/base/order_statistics.h"

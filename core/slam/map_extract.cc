@@ -3,7 +3,6 @@
 #include "core/slam/map_extract.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/base/order_statistics.h"
 #include "core/slam/pose_graph_terms.h"

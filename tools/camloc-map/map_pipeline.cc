@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/camloc-map/map_pipeline.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>

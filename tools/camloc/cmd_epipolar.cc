@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // `camloc epipolar`: a trajectory against the images it is of, where there is no reference, or none to be trusted.
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <map>
