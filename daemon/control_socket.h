@@ -16,8 +16,8 @@
 #include <string>
 
 #include "core/base/result.h"
-#include "daemon/control_protocol.h"
 #include "core/base/unique_fd.h"
+#include "daemon/control_protocol.h"
 
 namespace camloc {
 

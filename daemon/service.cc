@@ -16,10 +16,10 @@
 #include <cstring>
 #include <utility>
 
+#include "core/io/camera_file.h"
 #include "core/map/mapping_guard.h"
 #include "daemon/clock.h"
 #include "daemon/service_setup.h"
-#include "drivers/camera_file.h"
 
 namespace camloc {
 namespace {

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <array>
 
+#include "core/io/camera_file.h"
 #include "daemon/clock.h"
-#include "drivers/camera_file.h"
 
 namespace camloc {
 namespace {

@@ -9,11 +9,11 @@
 #include <system_error>
 #include <utility>
 
-#include "drivers/camera_file.h"
-#include "drivers/frame_selection.h"
-#include "drivers/image_file.h"
+#include "core/io/camera_file.h"
+#include "core/io/frame_selection.h"
+#include "core/io/image_file.h"
+#include "core/io/sequence.h"
 #include "drivers/pacer.h"
-#include "drivers/sequence.h"
 
 namespace camloc {
 

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <optional>
 
-#include "drivers/text.h"
+#include "core/io/text.h"
 
 namespace camloc {
 

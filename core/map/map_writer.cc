@@ -12,10 +12,10 @@
 #include <tuple>
 #include <utility>
 
+#include "core/io/replace_file.h"
 #include "core/map/landmark_codes.h"
 #include "core/map/map_format.h"
 #include "core/map/map_sections.h"
-#include "core/map/replace_file.h"
 
 namespace camloc {
 namespace {

@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "drivers/file_bytes.h"
+#include "core/io/file_bytes.h"
 #include "drivers/openni2/openni2_library.h"
 
 namespace camloc {

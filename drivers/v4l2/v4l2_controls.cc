@@ -11,7 +11,7 @@
 #include <cerrno>
 #include <optional>
 
-#include "drivers/text.h"
+#include "core/io/text.h"
 
 namespace camloc {
 

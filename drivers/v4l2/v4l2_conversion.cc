@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "drivers/image_codecs.h"
+#include "core/io/image_codecs.h"
 #include "drivers/packed_pixels.h"
 
 namespace camloc {

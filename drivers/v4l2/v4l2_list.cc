@@ -13,7 +13,7 @@
 #include <optional>
 #include <system_error>
 
-#include "drivers/text.h"
+#include "core/io/text.h"
 
 namespace camloc {
 

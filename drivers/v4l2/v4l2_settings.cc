@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "drivers/camera_file.h"
-#include "drivers/text.h"
+#include "core/io/camera_file.h"
+#include "core/io/text.h"
 #include "drivers/v4l2/v4l2_pixel_format.h"
 
 namespace camloc {

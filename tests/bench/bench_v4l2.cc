@@ -14,7 +14,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "drivers/image_writer.h"
+#include "core/io/image_writer.h"
 #include "drivers/v4l2/v4l2_conversion.h"
 
 namespace camloc {

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "drivers/camera_file.h"
+#include "core/io/camera_file.h"
 #include "drivers/sample_source.h"
 #include "tests/daemon/test_folder.h"
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/io/sequence.h"
 #include "drivers/frame_source.h"
-#include "drivers/sequence.h"
 #include "tests/drivers/test_folder.h"
 
 namespace camloc {

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/image_writer.h"
+#include "core/io/image_writer.h"
 
 namespace camloc {
 

@@ -12,7 +12,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "drivers/text.h"
+#include "core/io/text.h"
 #include "tests/fakes/unix_listener.h"
 
 namespace camloc::fakes {

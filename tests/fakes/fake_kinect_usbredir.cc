@@ -23,8 +23,8 @@
 #include <mutex>
 
 #include "tests/fakes/rig_arguments.h"
-#include "tests/fakes/usbredir_device.h"
 #include "tests/fakes/unix_listener.h"
+#include "tests/fakes/usbredir_device.h"
 
 namespace {
 

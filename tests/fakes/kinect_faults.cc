@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "drivers/text.h"
+#include "core/io/text.h"
 
 namespace camloc::fakes {
 namespace {

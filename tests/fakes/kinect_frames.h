@@ -15,7 +15,7 @@
 
 #include "core/base/result.h"
 #include "core/base/unique_fd.h"
-#include "drivers/image_file.h"
+#include "core/io/image_file.h"
 #include "tests/fakes/kinect_model.h"
 
 namespace camloc::fakes {

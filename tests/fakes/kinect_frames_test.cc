@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <random>
 
-#include "drivers/sequence.h"
+#include "core/io/sequence.h"
 
 namespace camloc::fakes {
 namespace {

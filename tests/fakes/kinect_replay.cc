@@ -7,8 +7,8 @@
 
 #include <cstring>
 
-#include "drivers/frame_selection.h"
-#include "drivers/sequence.h"
+#include "core/io/frame_selection.h"
+#include "core/io/sequence.h"
 #include "tests/fakes/kinect_frames.h"
 
 namespace camloc::fakes {

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <limits>
 
-#include "drivers/text.h"
+#include "core/io/text.h"
 
 namespace camloc::fakes {
 namespace {

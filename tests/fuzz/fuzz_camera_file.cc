@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "drivers/camera_file.h"
+#include "core/io/camera_file.h"
 
 namespace {
 

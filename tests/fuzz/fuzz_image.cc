@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <span>
 
-#include "drivers/image_file.h"
+#include "core/io/image_file.h"
 
 namespace {
 

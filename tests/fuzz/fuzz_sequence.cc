@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "drivers/frame_selection.h"
-#include "drivers/sequence.h"
+#include "core/io/frame_selection.h"
+#include "core/io/sequence.h"
 #include "drivers/source_url.h"
 #include "tests/fuzz/scratch_folder.h"
 

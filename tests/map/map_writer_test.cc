@@ -18,8 +18,8 @@
 #include <map>
 #include <set>
 
+#include "core/io/replace_file.h"
 #include "core/map/map_view.h"
-#include "core/map/replace_file.h"
 #include "tests/map/synthetic_map.h"
 
 namespace camloc {

@@ -8,7 +8,7 @@
 
 #include <filesystem>
 
-#include "drivers/image_writer.h"
+#include "core/io/image_writer.h"
 #include "tests/map/room_map.h"
 #include "tools/camloc-map/posed_frames.h"
 

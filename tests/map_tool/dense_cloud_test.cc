@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "drivers/image_writer.h"
+#include "core/io/image_writer.h"
 #include "tests/tools/command_runner.h"
 
 namespace camloc::map_tool {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "drivers/sequence.h"
+#include "core/io/sequence.h"
 #include "tests/map/room_map.h"
 #include "tests/map_tool/scanned_flat.h"
 #include "tests/tools/command_runner.h"

@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "drivers/sequence.h"
+#include "core/io/sequence.h"
 #include "tests/map/room_map.h"
 #include "tools/camloc-map/map_up.h"
 

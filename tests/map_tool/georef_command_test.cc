@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "core/io/camera_file.h"
+#include "core/io/image_writer.h"
 #include "core/map/map_unpack.h"
-#include "drivers/camera_file.h"
-#include "drivers/image_writer.h"
 #include "tests/localize/sample_world.h"
 #include "tests/tools/command_runner.h"
 #include "tools/camloc-map/commands.h"

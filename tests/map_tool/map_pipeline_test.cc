@@ -9,8 +9,8 @@
 #include <cmath>
 
 #include "core/geometry/alignment.h"
+#include "core/io/sequence.h"
 #include "core/map/map_view.h"
-#include "drivers/sequence.h"
 #include "tests/drivers/test_folder.h"
 #include "tests/map_tool/recorded_room.h"
 #include "tools/camloc-map/view_log.h"

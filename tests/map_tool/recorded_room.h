@@ -12,8 +12,8 @@
 #include <sstream>
 #include <string>
 
+#include "core/io/image_writer.h"
 #include "core/slam/slam.h"
-#include "drivers/image_writer.h"
 #include "drivers/sample_source.h"
 
 namespace camloc::map_tool {

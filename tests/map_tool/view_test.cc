@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "drivers/image_file.h"
-#include "drivers/sequence.h"
+#include "core/io/image_file.h"
+#include "core/io/sequence.h"
 #include "tests/map/room_map.h"
 #include "tools/camloc-map/colmap_model.h"
 #include "tools/camloc-map/commands.h"

@@ -13,7 +13,7 @@
 #include <random>
 
 #include "core/base/unique_fd.h"
-#include "drivers/image_writer.h"
+#include "core/io/image_writer.h"
 #include "tests/drivers/test_folder.h"
 #include "tests/openni2/oni_writer.h"
 

@@ -12,8 +12,8 @@
 #include <iterator>
 #include <map>
 
-#include "drivers/camera_file.h"
-#include "drivers/sequence.h"
+#include "core/io/camera_file.h"
+#include "core/io/sequence.h"
 #include "tools/camloc-sim/text_file.h"
 
 namespace camloc::sim {

@@ -4,7 +4,7 @@
 // `camloc camera show` and `import`, and what a fake /sys says about cameras on USB.
 #include <filesystem>
 
-#include "drivers/camera_file.h"
+#include "core/io/camera_file.h"
 #include "tests/tools/command_runner.h"
 #include "tests/tools/fake_usb.h"
 #include "tools/camloc/commands.h"

@@ -7,10 +7,10 @@
 #include <ctime>
 #include <set>
 
-#include "drivers/accelerometer.h"
+#include "core/io/accelerometer.h"
+#include "core/io/sequence.h"
 #include "drivers/frame_source.h"
 #include "drivers/sample_source.h"
-#include "drivers/sequence.h"
 #include "tests/tools/command_runner.h"
 #include "tools/camloc/commands.h"
 #include "tools/camloc/recorder.h"

@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
+#include "core/io/sequence.h"
 #include "core/map/mapping_guard.h"
 #include "drivers/frame_source.h"
-#include "drivers/sequence.h"
 #include "drivers/source_url.h"
 #include "tools/camloc-bench/opencv_reference.h"
 #include "tools/camloc/commands.h"

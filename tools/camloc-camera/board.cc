@@ -11,7 +11,7 @@
 #include <set>
 #include <string_view>
 
-#include "drivers/text.h"
+#include "core/io/text.h"
 
 namespace camloc::camera_tool {
 namespace {

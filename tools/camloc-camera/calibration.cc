@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "drivers/camera_file.h"
+#include "core/io/camera_file.h"
 #include "tools/common/text_format.h"
 
 namespace camloc::camera_tool {

@@ -8,8 +8,8 @@
 #include <map>
 #include <memory>
 
-#include "drivers/camera_file.h"
-#include "drivers/image_writer.h"
+#include "core/io/camera_file.h"
+#include "core/io/image_writer.h"
 #include "tools/camloc-camera/calibration.h"
 #include "tools/camloc-camera/commands.h"
 #include "tools/camloc-camera/coverage_picture.h"

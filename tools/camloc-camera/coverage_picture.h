@@ -6,7 +6,7 @@
 
 #include <span>
 
-#include "drivers/image_file.h"
+#include "core/io/image_file.h"
 #include "tools/camloc-camera/view_selection.h"
 
 namespace camloc::camera_tool {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/gravity.h"
 #include "core/map/map_builder.h"
 #include "core/map/map_data.h"
-#include "core/geometry/gravity.h"
 #include "core/slam/slam.h"
 #include "tools/camloc-map/colmap_scale.h"
 #include "tools/camloc-map/georef_report.h"

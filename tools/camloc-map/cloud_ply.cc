@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/checked.h"
-#include "drivers/text.h"
+#include "core/io/text.h"
 #include "tools/camloc-map/cloud_formats.h"
 
 namespace camloc::map_tool {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/text.h"
+#include "core/io/text.h"
 #include "tools/camloc-map/cloud_formats.h"
 
 namespace camloc::map_tool {

@@ -7,8 +7,8 @@
 #include <map>
 #include <memory>
 
+#include "core/io/camera_file.h"
 #include "core/map/map_view.h"
-#include "drivers/camera_file.h"
 #include "tools/camloc-map/build_report.h"
 #include "tools/camloc-map/commands.h"
 #include "tools/camloc-map/map_pipeline.h"

@@ -8,9 +8,9 @@
 #include <map>
 #include <memory>
 
-#include "drivers/camera_file.h"
-#include "drivers/image_writer.h"
-#include "drivers/sequence.h"
+#include "core/io/camera_file.h"
+#include "core/io/image_writer.h"
+#include "core/io/sequence.h"
 #include "tools/camloc-map/cloud_file.h"
 #include "tools/camloc-map/commands.h"
 #include "tools/camloc-map/dense_cloud.h"

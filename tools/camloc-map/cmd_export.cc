@@ -7,7 +7,7 @@
 #include <memory>
 #include <span>
 
-#include "core/map/replace_file.h"
+#include "core/io/replace_file.h"
 #include "tools/camloc-map/commands.h"
 #include "tools/camloc-map/map_export.h"
 #include "tools/common/output_path.h"

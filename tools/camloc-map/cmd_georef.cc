@@ -8,10 +8,10 @@
 #include <set>
 
 #include "core/geometry/gravity.h"
+#include "core/io/camera_file.h"
 #include "core/map/map_unpack.h"
 #include "core/map/map_view.h"
 #include "core/map/map_writer.h"
-#include "drivers/camera_file.h"
 #include "tools/camloc-map/commands.h"
 #include "tools/camloc-map/control_points.h"
 #include "tools/camloc-map/frame_localization.h"

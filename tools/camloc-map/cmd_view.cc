@@ -6,8 +6,8 @@
 #include <map>
 #include <memory>
 
-#include "drivers/image_writer.h"
-#include "drivers/sequence.h"
+#include "core/io/image_writer.h"
+#include "core/io/sequence.h"
 #include "tools/camloc-map/commands.h"
 #include "tools/camloc-map/map_picture.h"
 #include "tools/common/output_path.h"

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "core/geometry/depth_registration.h"
-#include "drivers/image_file.h"
-#include "drivers/text.h"
+#include "core/io/image_file.h"
+#include "core/io/text.h"
 
 namespace camloc::map_tool {
 namespace {

@@ -11,7 +11,7 @@
 #include "core/base/result.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
-#include "drivers/sequence.h"
+#include "core/io/sequence.h"
 #include "tools/camloc-map/colmap_model.h"
 #include "tools/camloc-map/colmap_scale.h"
 

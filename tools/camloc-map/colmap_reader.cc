@@ -11,8 +11,8 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "drivers/file_bytes.h"
-#include "drivers/text.h"
+#include "core/io/file_bytes.h"
+#include "core/io/text.h"
 #include "tools/camloc-map/colmap_model.h"
 
 namespace camloc::map_tool {

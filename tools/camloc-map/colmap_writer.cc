@@ -7,7 +7,7 @@
 #include <span>
 #include <system_error>
 
-#include "core/map/replace_file.h"
+#include "core/io/replace_file.h"
 #include "tools/camloc-map/colmap_model.h"
 
 namespace camloc::map_tool {

@@ -11,8 +11,8 @@
 #include <map>
 #include <optional>
 
-#include "drivers/file_bytes.h"
-#include "drivers/text.h"
+#include "core/io/file_bytes.h"
+#include "core/io/text.h"
 
 namespace camloc::map_tool {
 namespace {

@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "drivers/image_file.h"
+#include "core/io/image_file.h"
 #include "tools/camloc-map/evaluation.h"
 #include "tools/camloc-map/point_cloud.h"
 

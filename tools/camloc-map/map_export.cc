@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "drivers/sequence.h"
+#include "core/io/sequence.h"
 #include "tools/camloc-map/map_up.h"
 #include "tools/camloc-map/point_raster.h"
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "core/io/image_file.h"
 #include "core/map/localizability.h"
 #include "core/map/map_view.h"
-#include "drivers/image_file.h"
 #include "tools/camloc-map/point_raster.h"
 #include "tools/camloc-map/weak_places.h"
 

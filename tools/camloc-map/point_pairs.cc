@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drivers/file_bytes.h"
-#include "drivers/text.h"
+#include "core/io/file_bytes.h"
+#include "core/io/text.h"
 
 namespace camloc::map_tool {
 namespace {

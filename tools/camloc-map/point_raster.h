@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/geometry/rigid3.h"
-#include "drivers/image_file.h"
+#include "core/io/image_file.h"
 
 namespace camloc::map_tool {
 

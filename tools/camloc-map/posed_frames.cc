@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/frame_selection.h"
-#include "drivers/sequence.h"
+#include "core/io/frame_selection.h"
+#include "core/io/sequence.h"
 #include "tools/camloc-map/colmap_poses.h"
 
 namespace camloc::map_tool {

@@ -7,7 +7,7 @@
 #include <set>
 #include <unordered_map>
 
-#include "drivers/accelerometer.h"
+#include "core/io/accelerometer.h"
 #include "drivers/frame_source.h"
 #include "tools/common/frame_reading.h"
 

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "drivers/camera_file.h"
+#include "core/io/camera_file.h"
 #include "tools/camloc-map/surface_sample.h"
 #include "tools/camloc-map/view_log.h"
 #include "tools/common/interrupt.h"

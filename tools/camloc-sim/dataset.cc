@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "drivers/camera_file.h"
+#include "core/io/camera_file.h"
 #include "tools/camloc-sim/text_file.h"
 
 namespace camloc::sim {

@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
-#include "drivers/image_writer.h"
-#include "drivers/sequence.h"
+#include "core/io/image_writer.h"
+#include "core/io/sequence.h"
 #include "tools/camloc-sim/text_file.h"
 
 namespace camloc::sim {

@@ -9,7 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "drivers/camera_file.h"
+#include "core/io/camera_file.h"
 #include "drivers/openni2/installation.h"
 #include "drivers/v4l2/v4l2_list.h"
 #include "tools/camloc/commands.h"

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "core/base/order_statistics.h"
-#include "drivers/camera_file.h"
+#include "core/io/camera_file.h"
 #include "tools/camloc/commands.h"
 #include "tools/camloc/epipolar_error.h"
 #include "tools/camloc/recorded_poses.h"

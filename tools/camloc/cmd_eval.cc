@@ -8,8 +8,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/io/camera_file.h"
 #include "core/map/map_view.h"
-#include "drivers/camera_file.h"
 #include "tools/camloc/commands.h"
 #include "tools/camloc/recorded_poses.h"
 #include "tools/camloc/top_view.h"

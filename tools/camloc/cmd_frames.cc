@@ -12,7 +12,7 @@
 
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
-#include "drivers/sequence.h"
+#include "core/io/sequence.h"
 #include "tools/camloc/commands.h"
 
 namespace camloc::tools {

@@ -9,10 +9,10 @@
 
 #include "tools/camloc/commands.h"
 #include "tools/camloc/sequence_run.h"
-#include "tools/common/trajectory_file.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/output_path.h"
 #include "tools/common/progress_line.h"
+#include "tools/common/trajectory_file.h"
 
 namespace camloc::tools {
 namespace {

@@ -9,7 +9,7 @@
 #include <memory>
 #include <string>
 
-#include "drivers/camera_file.h"
+#include "core/io/camera_file.h"
 #include "drivers/source_url.h"
 #include "tools/camloc/commands.h"
 #include "tools/camloc/recorder.h"

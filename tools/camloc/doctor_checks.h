@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "drivers/openni2/installation.h"
-#include "tools/camloc/multicast_route.h"
 #include "tools/camloc/control_client.h"
+#include "tools/camloc/multicast_route.h"
 #include "tools/camloc/usb_devices.h"
 
 namespace camloc::tools {

@@ -7,8 +7,8 @@
 #include <chrono>
 #include <filesystem>
 
+#include "core/io/camera_file.h"
 #include "core/map/map_view.h"
-#include "drivers/camera_file.h"
 #include "drivers/frame_source.h"
 #include "drivers/source_url.h"
 #include "tools/camloc/doctor_checks.h"

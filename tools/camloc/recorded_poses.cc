@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/camloc/recorded_poses.h"
 
-#include "drivers/frame_selection.h"
+#include "core/io/frame_selection.h"
 
 namespace camloc::tools {
 

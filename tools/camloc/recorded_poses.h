@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/sequence.h"
+#include "core/io/sequence.h"
 
 namespace camloc::tools {
 

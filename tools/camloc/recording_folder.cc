@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/geometry/gravity.h"
-#include "drivers/camera_file.h"
+#include "core/io/camera_file.h"
 #include "tools/common/text_format.h"
 #include "tools/common/trajectory_file.h"
 

@@ -13,7 +13,7 @@
 #include "core/base/result.h"
 #include "core/base/unique_fd.h"
 #include "core/geometry/camera.h"
-#include "drivers/image_writer.h"
+#include "core/io/image_writer.h"
 
 namespace camloc::tools {
 

@@ -4,8 +4,8 @@
 
 #include <chrono>
 
-#include "drivers/camera_file.h"
-#include "drivers/frame_selection.h"
+#include "core/io/camera_file.h"
+#include "core/io/frame_selection.h"
 #include "tools/common/command_line.h"
 
 namespace camloc::tools {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "drivers/image_writer.h"
+#include "core/io/image_writer.h"
 
 namespace camloc::tools {
 namespace {

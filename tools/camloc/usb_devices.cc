@@ -11,7 +11,7 @@
 #include <optional>
 #include <tuple>
 
-#include "drivers/text.h"
+#include "core/io/text.h"
 #include "tools/common/text_format.h"
 
 namespace camloc::tools {

@@ -8,8 +8,8 @@
 #include <span>
 #include <sstream>
 
-#include "core/map/replace_file.h"
-#include "drivers/sequence.h"
+#include "core/io/replace_file.h"
+#include "core/io/sequence.h"
 
 namespace camloc::tools {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/image_writer.h"
+#include "core/io/image_writer.h"
 
-#include "drivers/image_file.h"
+#include "core/io/image_file.h"
 #include "tests/drivers/test_folder.h"
 
 namespace camloc {

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
-#include "drivers/sequence.h"
-#include "drivers/text.h"
+#include "core/io/sequence.h"
+#include "core/io/text.h"
 #include "tests/drivers/test_folder.h"
 
 namespace camloc {

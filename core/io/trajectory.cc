@@ -9,9 +9,9 @@
 #include <filesystem>
 #include <system_error>
 
-#include "drivers/file_bytes.h"
-#include "drivers/sequence.h"
-#include "drivers/text.h"
+#include "core/io/file_bytes.h"
+#include "core/io/sequence.h"
+#include "core/io/text.h"
 
 namespace camloc {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/camera_file.h"
+#include "core/io/camera_file.h"
 
 #include "tests/drivers/test_folder.h"
 

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // See image_file.h.
-#include "drivers/image_file.h"
+#include "core/io/image_file.h"
 
 #include <algorithm>
 #include <array>
 
-#include "drivers/file_bytes.h"
-#include "drivers/image_codecs.h"
+#include "core/io/file_bytes.h"
+#include "core/io/image_codecs.h"
 
 namespace camloc {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // See text.h.
-#include "drivers/text.h"
+#include "core/io/text.h"
 
 #include <charconv>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/text.h"
+#include "core/io/text.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <jerror.h>
 #include <jpeglib.h>
 
-#include "drivers/image_codecs.h"
+#include "core/io/image_codecs.h"
 
 namespace camloc {
 

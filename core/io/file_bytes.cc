@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // See file_bytes.h.
-#include "drivers/file_bytes.h"
+#include "core/io/file_bytes.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

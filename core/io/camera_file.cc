@@ -2,15 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // See camera_file.h.
-#include "drivers/camera_file.h"
+#include "core/io/camera_file.h"
 
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
 
-#include "drivers/camera_formats.h"
-#include "drivers/file_bytes.h"
-#include "drivers/text.h"
+#include "core/io/camera_formats.h"
+#include "core/io/file_bytes.h"
+#include "core/io/text.h"
 
 namespace camloc {
 

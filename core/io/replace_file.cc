@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/map/replace_file.h"
+#include "core/io/replace_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include "drivers/camera_file.h"
+#include "core/io/camera_file.h"
 
 namespace camloc {
 namespace {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // See sequence.h. Poses are in trajectory.cc.
-#include "drivers/sequence.h"
+#include "core/io/sequence.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,8 @@
 #include <system_error>
 #include <tuple>
 
-#include "drivers/file_bytes.h"
-#include "drivers/text.h"
+#include "core/io/file_bytes.h"
+#include "core/io/text.h"
 
 namespace camloc {
 

@@ -15,8 +15,8 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/camera_formats.h"
-#include "drivers/text.h"
+#include "core/io/camera_formats.h"
+#include "core/io/text.h"
 
 namespace camloc {
 

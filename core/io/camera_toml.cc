@@ -12,8 +12,8 @@
 #include <string>
 #include <string_view>
 
-#include "drivers/camera_formats.h"
-#include "drivers/text.h"
+#include "core/io/camera_formats.h"
+#include "core/io/text.h"
 
 namespace camloc {
 

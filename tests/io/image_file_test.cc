@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/image_file.h"
+#include "core/io/image_file.h"
 
 #include <png.h>
 

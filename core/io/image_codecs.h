@@ -12,7 +12,7 @@
 
 #include "core/base/frame.h"
 #include "core/base/result.h"
-#include "drivers/image_file.h"
+#include "core/io/image_file.h"
 
 namespace camloc {
 

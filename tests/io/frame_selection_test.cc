@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/frame_selection.h"
+#include "core/io/frame_selection.h"
 
 #include <gtest/gtest.h>
 

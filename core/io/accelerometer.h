@@ -13,7 +13,7 @@
 
 #include "core/base/result.h"
 #include "core/geometry/gravity.h"
-#include "drivers/sequence.h"
+#include "core/io/sequence.h"
 
 namespace camloc {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // See image_writer.h. Both libraries encode into memory first, so that their errors and those of the disk stay apart.
-#include "drivers/image_writer.h"
+#include "core/io/image_writer.h"
 
 #include <png.h>
 #include <zlib.h>

@@ -3,14 +3,14 @@
 //
 // See frame_selection.h. Bounds follow Python's slice.indices(): a negative bound counts from the end, then both are
 // clipped into the sequence.
-#include "drivers/frame_selection.h"
+#include "core/io/frame_selection.h"
 
 #include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string_view>
 
-#include "drivers/text.h"
+#include "core/io/text.h"
 
 namespace camloc {
 

@@ -8,7 +8,7 @@
 #include <csetjmp>
 #include <cstring>
 
-#include "drivers/image_codecs.h"
+#include "core/io/image_codecs.h"
 
 namespace camloc {
 

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/accelerometer.h"
+#include "core/io/accelerometer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <optional>
 
-#include "drivers/file_bytes.h"
-#include "drivers/text.h"
+#include "core/io/file_bytes.h"
+#include "core/io/text.h"
 
 namespace camloc {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/file_bytes.h"
+#include "core/io/file_bytes.h"
 
 #include <sys/stat.h>
 
