@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/map/map_data.h"
-#include "core/map/view_features.h"
+#include "core/registration/view_features.h"
 
 namespace camloc {
 

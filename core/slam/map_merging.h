@@ -8,7 +8,7 @@
 
 #include <cstdint>
 
-#include "core/map/map_assembly.h"
+#include "core/mapmaking/map_assembly.h"
 #include "core/slam/landmark_merging.h"
 #include "core/slam/map_alignment.h"
 #include "core/slam/map_registration.h"

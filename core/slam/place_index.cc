@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/map/vocabulary.h"
+#include "core/mapmaking/vocabulary.h"
 
 namespace camloc {
 namespace {

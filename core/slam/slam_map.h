@@ -12,7 +12,7 @@
 #include "core/features/descriptor.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
-#include "core/map/view_features.h"
+#include "core/registration/view_features.h"
 
 namespace camloc {
 

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "core/base/result.h"
-#include "core/map/map_builder.h"
 #include "core/map/map_writer.h"
+#include "core/mapmaking/map_builder.h"
 #include "drivers/frame_source.h"
 #include "drivers/sample_source.h"
 

@@ -15,12 +15,13 @@ import sys
 import tempfile
 import unittest
 
-CORE = ["core/base", "core/geometry", "core/io", "core/features", "core/map", "core/localize"]
+CORE = ["core/base", "core/geometry", "core/io", "core/features", "core/registration", "core/map", "core/mapmaking", "core/localize"]
 LCM_TYPES = ["camloc", "bot_core"]
 # What a folder may include besides itself. Of several that match a file, the longest rules.
 ALLOWED = {folder: CORE[:i] for i, folder in enumerate(CORE)}
 ALLOWED["core/features"] = ["core/base", "core/geometry"]
-ALLOWED["core/slam"] = CORE[:5]
+ALLOWED["core/registration"] = ["core/base", "core/geometry", "core/features"]
+ALLOWED["core/slam"] = CORE[:7]
 ALLOWED["drivers"] = ["core/base", "core/geometry", "core/io"]
 ALLOWED["daemon"] = ["drivers", *CORE, *LCM_TYPES]
 ALLOWED["tools"] = ["drivers", *CORE, "core/slam", *LCM_TYPES]

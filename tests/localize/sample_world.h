@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "core/localize/localizer.h"
-#include "core/map/map_builder.h"
 #include "core/map/map_view.h"
 #include "core/map/map_writer.h"
+#include "core/mapmaking/map_builder.h"
 #include "drivers/sample_source.h"
 #include "tests/map/synthetic_map.h"
 

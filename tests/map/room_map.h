@@ -5,7 +5,7 @@
 #pragma once
 
 #include "core/map/map_writer.h"
-#include "core/map/vocabulary.h"
+#include "core/mapmaking/vocabulary.h"
 #include "tests/map/synthetic_map.h"
 
 namespace camloc::testing {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/geometry/alignment.h"
-#include "core/map/view_features.h"
+#include "core/registration/view_features.h"
 #include "core/slam/slam.h"
 
 namespace camloc::testing {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/map/map_data.h"
-#include "core/map/vocabulary.h"
+#include "core/mapmaking/vocabulary.h"
 #include "tests/map/room_map.h"
 
 namespace camloc::testing {

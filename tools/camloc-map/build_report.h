@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/geometry/gravity.h"
-#include "core/map/map_builder.h"
 #include "core/map/map_data.h"
+#include "core/mapmaking/map_builder.h"
 #include "core/slam/slam.h"
 #include "tools/camloc-map/colmap_scale.h"
 #include "tools/camloc-map/georef_report.h"

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/io/image_file.h"
-#include "core/map/localizability.h"
 #include "core/map/map_view.h"
+#include "core/mapmaking/localizability.h"
 #include "tools/camloc-map/point_raster.h"
 #include "tools/camloc-map/weak_places.h"
 

@@ -9,7 +9,7 @@
 
 #include "core/base/result.h"
 #include "core/geometry/camera.h"
-#include "core/map/map_builder.h"
+#include "core/mapmaking/map_builder.h"
 #include "core/slam/slam.h"
 #include "tools/camloc-map/build_report.h"
 #include "tools/camloc-map/posed_frames.h"

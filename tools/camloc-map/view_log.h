@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/base/result.h"
-#include "core/map/view_features.h"
+#include "core/registration/view_features.h"
 #include "core/slam/view_thumbnail.h"
 
 namespace camloc::map_tool {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/map/localizability.h"
 #include "core/map/map_view.h"
+#include "core/mapmaking/localizability.h"
 
 namespace camloc::map_tool {
 

@@ -12,7 +12,7 @@
 #include "core/features/matcher.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/pnp_ransac.h"
-#include "core/map/view_features.h"
+#include "core/registration/view_features.h"
 
 namespace camloc::tools {
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/mix_bits.h"
-#include "core/map/landmark_fusion.h"
+#include "core/mapmaking/landmark_fusion.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -11,8 +11,8 @@
 
 #include "core/base/result.h"
 #include "core/features/orb_extractor.h"
-#include "core/map/landmark_fusion.h"
 #include "core/map/map_data.h"
+#include "core/mapmaking/landmark_fusion.h"
 
 namespace camloc {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/map/localizability.h"
+#include "core/mapmaking/localizability.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/map/vocabulary.h"
+#include "core/mapmaking/vocabulary.h"
 
 #include <gtest/gtest.h>
 

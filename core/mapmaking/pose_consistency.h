@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/geometry/camera.h"
-#include "core/map/landmark_fusion.h"
+#include "core/mapmaking/landmark_fusion.h"
 
 namespace camloc {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "core/features/hamming.h"
-#include "core/map/landmark_fusion.h"
+#include "core/mapmaking/landmark_fusion.h"
 
 namespace camloc {
 

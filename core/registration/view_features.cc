@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/map/view_features.h"
+#include "core/registration/view_features.h"
 
 #include <string>
 

@@ -1,16 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/map/map_assembly.h"
+#include "core/mapmaking/map_assembly.h"
 
 #include <algorithm>
 #include <limits>
 #include <optional>
 #include <string>
 
-#include "core/map/keyframe_cover.h"
-#include "core/map/landmark_budget.h"
 #include "core/map/map_writer.h"
-#include "core/map/vocabulary.h"
+#include "core/mapmaking/keyframe_cover.h"
+#include "core/mapmaking/landmark_budget.h"
+#include "core/mapmaking/vocabulary.h"
 
 namespace camloc {
 namespace {

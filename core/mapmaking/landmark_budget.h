@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "core/map/landmark_fusion.h"
+#include "core/mapmaking/landmark_fusion.h"
 
 namespace camloc {
 

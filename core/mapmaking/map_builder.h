@@ -11,9 +11,9 @@
 #include "core/base/frame.h"
 #include "core/base/result.h"
 #include "core/geometry/camera.h"
-#include "core/map/map_assembly.h"
 #include "core/map/map_data.h"
-#include "core/map/view_features.h"
+#include "core/mapmaking/map_assembly.h"
+#include "core/registration/view_features.h"
 
 namespace camloc {
 

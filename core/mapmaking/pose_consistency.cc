@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/map/pose_consistency.h"
+#include "core/mapmaking/pose_consistency.h"
 
 #include <algorithm>
 #include <cassert>

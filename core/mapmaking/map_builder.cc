@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/map/map_builder.h"
+#include "core/mapmaking/map_builder.h"
 
 #include <string>
 
-#include "core/map/landmark_fusion.h"
-#include "core/map/pose_consistency.h"
+#include "core/mapmaking/landmark_fusion.h"
+#include "core/mapmaking/pose_consistency.h"
 
 namespace camloc {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/map/keyframe_cover.h"
+#include "core/mapmaking/keyframe_cover.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Places whose outlook is known: a rich room, a bare wall, a corridor of identical bays.
-#include "core/map/localizability.h"
+#include "core/mapmaking/localizability.h"
 
 #include <gtest/gtest.h>
 

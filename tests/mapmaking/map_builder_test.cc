@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A textured wall, rendered exactly from known poses, becomes a map.
-#include "core/map/map_builder.h"
+#include "core/mapmaking/map_builder.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/map/landmark_budget.h"
+#include "core/mapmaking/landmark_budget.h"
 
 #include <algorithm>
 #include <cmath>

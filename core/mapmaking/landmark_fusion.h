@@ -18,7 +18,7 @@
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
 #include "core/map/map_data.h"
-#include "core/map/view_features.h"
+#include "core/registration/view_features.h"
 
 namespace camloc {
 

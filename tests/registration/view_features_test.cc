@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A frame becomes a view: features, their rays and depths; frames that do not fit the camera are refused.
-#include "core/map/view_features.h"
+#include "core/registration/view_features.h"
 
 #include <gtest/gtest.h>
 
