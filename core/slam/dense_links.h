@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
+#include "core/optimize/pose_graph.h"
 #include "core/slam/dense_alignment.h"
-#include "core/slam/pose_graph.h"
 #include "core/slam/slam_map.h"
 #include "core/slam/view_thumbnail.h"
 

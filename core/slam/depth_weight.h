@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "core/slam/bundle_adjustment.h"
+#include "core/optimize/bundle_adjustment.h"
 
 namespace camloc {
 

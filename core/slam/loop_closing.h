@@ -10,11 +10,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/optimize/pose_graph.h"
 #include "core/slam/dead_reckoning.h"
 #include "core/slam/loop_detection.h"
 #include "core/slam/loop_options.h"
 #include "core/slam/place_index.h"
-#include "core/slam/pose_graph.h"
 #include "core/slam/slam_map.h"
 #include "core/slam/view_registration.h"
 

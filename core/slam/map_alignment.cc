@@ -9,8 +9,8 @@
 
 #include "core/base/order_statistics.h"
 #include "core/geometry/alignment.h"
+#include "core/optimize/pose_graph.h"
 #include "core/slam/dead_reckoning.h"
-#include "core/slam/pose_graph.h"
 
 namespace camloc {
 namespace {

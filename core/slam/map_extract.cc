@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/base/order_statistics.h"
-#include "core/slam/pose_graph_terms.h"
+#include "core/optimize/pose_graph_terms.h"
 
 namespace camloc {
 namespace {

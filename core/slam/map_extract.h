@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "core/slam/bundle_adjustment.h"
+#include "core/optimize/bundle_adjustment.h"
 #include "core/slam/slam_map.h"
 
 namespace camloc {

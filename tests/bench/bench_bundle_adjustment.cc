@@ -17,10 +17,10 @@
 #include <fstream>
 #include <string>
 
-#include "core/slam/bundle_adjustment.h"
-#include "tests/slam/generated_bundle.h"
+#include "core/optimize/bundle_adjustment.h"
+#include "tests/optimize/generated_bundle.h"
 #ifdef CAMLOC_HAS_CERES
-#include "tests/slam/ceres_bundle.h"
+#include "tests/optimize/ceres_bundle.h"
 #endif
 
 namespace camloc {

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "core/geometry/alignment.h"
-#include "tests/slam/generated_bundle.h"
+#include "tests/optimize/generated_bundle.h"
 
 namespace camloc {
 namespace {

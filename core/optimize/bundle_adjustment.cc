@@ -3,7 +3,7 @@
 //
 // The loop of Levenberg-Marquardt over cameras and landmarks. Each state is linearized when its cost is computed, with the
 // damping it will be left with if it is accepted, so that an accepted step costs one pass over the observations.
-#include "core/slam/bundle_adjustment.h"
+#include "core/optimize/bundle_adjustment.h"
 
 #include <algorithm>
 #include <cassert>
@@ -12,8 +12,8 @@
 #include <optional>
 
 #include "core/geometry/pose_jacobian.h"
-#include "core/slam/landmark_elimination.h"
-#include "core/slam/pose_graph_terms.h"
+#include "core/optimize/landmark_elimination.h"
+#include "core/optimize/pose_graph_terms.h"
 
 namespace camloc {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The derivatives of edges and priors; checked against differences in tests/slam/pose_graph_test.cc.
-#include "core/slam/pose_graph_terms.h"
+// The derivatives of edges and priors; checked against differences in tests/optimize/pose_graph_test.cc.
+#include "core/optimize/pose_graph_terms.h"
 
 #include <Eigen/Cholesky>
 #include <cmath>

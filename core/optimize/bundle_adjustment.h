@@ -20,7 +20,7 @@
 
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
-#include "core/slam/pose_graph.h"
+#include "core/optimize/pose_graph.h"
 
 namespace camloc {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/geometry/rigid3.h"
-#include "core/slam/block_cholesky.h"
+#include "core/optimize/block_cholesky.h"
 
 namespace camloc {
 

@@ -4,9 +4,9 @@
 // The same problems solved by Ceres with automatic derivatives: both must end in the same minimum.
 #include <gtest/gtest.h>
 
-#include "tests/slam/generated_bundle.h"
+#include "tests/optimize/generated_bundle.h"
 #ifdef CAMLOC_HAS_CERES
-#include "tests/slam/ceres_bundle.h"
+#include "tests/optimize/ceres_bundle.h"
 #endif
 
 namespace camloc {

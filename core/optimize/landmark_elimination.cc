@@ -3,7 +3,7 @@
 //
 // Schur complement, one landmark at a time. With C = L L' the landmark's damped 3x3 block and W_i that of camera i and the
 // landmark, E_i = W_i L^-T and the reduced system loses E_i E_j' for each pair of cameras.
-#include "core/slam/landmark_elimination.h"
+#include "core/optimize/landmark_elimination.h"
 
 #include <algorithm>
 #include <cstring>

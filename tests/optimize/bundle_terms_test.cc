@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // One observation and one landmark: weights and derivatives against differences, the elimination against the whole system.
-#include "core/slam/bundle_terms.h"
+#include "core/optimize/bundle_terms.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <array>
 
 #include "core/geometry/pose_jacobian.h"
-#include "core/slam/landmark_elimination.h"
+#include "core/optimize/landmark_elimination.h"
 #include "tests/geometry/generated.h"
 
 namespace camloc {

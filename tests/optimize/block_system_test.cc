@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Dense and sparse solutions of block systems against Eigen's of the whole matrix.
-#include "core/slam/block_system.h"
+#include "core/optimize/block_system.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Storage and factorization of the block system.
-#include "core/slam/block_system.h"
+#include "core/optimize/block_system.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

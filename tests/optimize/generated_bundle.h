@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "core/slam/bundle_adjustment.h"
+#include "core/optimize/bundle_adjustment.h"
 #include "tests/geometry/generated.h"
 
 namespace camloc::testing {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Levenberg-Marquardt over the poses that are not fixed. A pose changes in its own axes, see pose_jacobian.h.
-#include "core/slam/pose_graph.h"
+#include "core/optimize/pose_graph.h"
 
 #include <algorithm>
 #include <cassert>
@@ -10,8 +10,8 @@
 #include <limits>
 
 #include "core/geometry/pose_jacobian.h"
-#include "core/slam/block_system.h"
-#include "core/slam/pose_graph_terms.h"
+#include "core/optimize/block_system.h"
+#include "core/optimize/pose_graph_terms.h"
 
 namespace camloc {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <vector>
 
-#include "core/slam/block_system.h"
-#include "core/slam/bundle_terms.h"
+#include "core/optimize/block_system.h"
+#include "core/optimize/bundle_terms.h"
 
 namespace camloc {
 

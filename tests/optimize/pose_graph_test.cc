@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Pose graphs whose truth is known.
-#include "core/slam/pose_graph.h"
+#include "core/optimize/pose_graph.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "core/geometry/pose_jacobian.h"
-#include "core/slam/pose_graph_terms.h"
+#include "core/optimize/pose_graph_terms.h"
 #include "tests/geometry/generated.h"
 
 namespace camloc {

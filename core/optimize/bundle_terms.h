@@ -14,7 +14,7 @@
 #include <cstdint>
 
 #include "core/geometry/rigid3.h"
-#include "core/slam/bundle_adjustment.h"
+#include "core/optimize/bundle_adjustment.h"
 
 namespace camloc {
 

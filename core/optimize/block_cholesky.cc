@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Analysis, factorization and solution.
-#include "core/slam/block_cholesky.h"
+#include "core/optimize/block_cholesky.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/OrderingMethods>

@@ -5,7 +5,7 @@
 // each pose changing in its own axes (see pose_jacobian.h).
 #pragma once
 
-#include "core/slam/pose_graph.h"
+#include "core/optimize/pose_graph.h"
 
 namespace camloc {
 

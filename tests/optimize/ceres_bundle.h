@@ -11,7 +11,7 @@
 #include <array>
 #include <vector>
 
-#include "core/slam/bundle_adjustment.h"
+#include "core/optimize/bundle_adjustment.h"
 
 namespace camloc::testing {
 

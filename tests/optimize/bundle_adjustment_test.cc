@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Bundle adjustment on generated rooms whose truth is known.
-#include "core/slam/bundle_adjustment.h"
+#include "core/optimize/bundle_adjustment.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "tests/slam/generated_bundle.h"
+#include "tests/optimize/generated_bundle.h"
 
 namespace camloc {
 namespace {
