@@ -11,10 +11,10 @@
 #include <span>
 #include <vector>
 
+#include "core/dense/dense_alignment.h"
+#include "core/dense/thumbnail.h"
 #include "core/optimize/pose_graph.h"
-#include "core/slam/dense_alignment.h"
 #include "core/slam/slam_map.h"
-#include "core/slam/view_thumbnail.h"
 
 namespace camloc {
 

@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/slam/dense_alignment.h"
-#include "core/slam/view_thumbnail.h"
+#include "core/dense/dense_alignment.h"
+#include "core/dense/thumbnail.h"
 
 namespace camloc {
 

@@ -9,7 +9,7 @@
 #include <array>
 #include <cstdint>
 
-#include "core/slam/patch_alignment.h"
+#include "core/dense/patch_alignment.h"
 #include "core/slam/slam_map.h"
 
 namespace camloc {

@@ -14,6 +14,8 @@
 #include <span>
 #include <vector>
 
+#include "core/dense/patch_alignment.h"
+#include "core/dense/thumbnail.h"
 #include "core/slam/dense_links.h"
 #include "core/slam/depth_bridge.h"
 #include "core/slam/depth_weight.h"
@@ -21,12 +23,10 @@
 #include "core/slam/loop_closing.h"
 #include "core/slam/map_adjustment.h"
 #include "core/slam/map_uncertainty.h"
-#include "core/slam/patch_alignment.h"
 #include "core/slam/place_index.h"
 #include "core/slam/slam_map.h"
 #include "core/slam/tracker.h"
 #include "core/slam/view_registration.h"
-#include "core/slam/view_thumbnail.h"
 
 namespace camloc {
 

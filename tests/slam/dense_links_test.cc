@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "core/slam/keyframe_insertion.h"
-#include "tests/slam/generated_thumbnail.h"
+#include "tests/dense/generated_thumbnail.h"
 #include "tests/slam/generated_walk.h"
 
 namespace camloc {

@@ -9,7 +9,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "tests/slam/generated_thumbnail.h"
+#include "tests/dense/generated_thumbnail.h"
 #include "tests/slam/generated_walk.h"
 
 namespace camloc {

@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "tests/slam/generated_texture.h"
+#include "tests/dense/generated_texture.h"
 
 namespace camloc {
 namespace {

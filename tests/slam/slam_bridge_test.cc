@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/slam/slam.h"
-#include "tests/slam/generated_thumbnail.h"
+#include "tests/dense/generated_thumbnail.h"
 #include "tests/slam/generated_walk.h"
 
 namespace camloc {

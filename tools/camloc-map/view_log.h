@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/dense/thumbnail.h"
 #include "core/registration/view_features.h"
-#include "core/slam/view_thumbnail.h"
 
 namespace camloc::map_tool {
 

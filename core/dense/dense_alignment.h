@@ -9,9 +9,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/dense/thumbnail.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
-#include "core/slam/view_thumbnail.h"
 
 namespace camloc {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/slam/view_thumbnail.h"
+#include "core/dense/thumbnail.h"
 
 #include <algorithm>
 #include <cmath>

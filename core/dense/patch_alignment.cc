@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/slam/patch_alignment.h"
+#include "core/dense/patch_alignment.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -9,9 +9,9 @@
 #include <cstdint>
 #include <random>
 
+#include "core/dense/thumbnail.h"
 #include "core/geometry/camera.h"
-#include "core/slam/view_thumbnail.h"
-#include "tests/slam/generated_texture.h"
+#include "tests/dense/generated_texture.h"
 
 namespace camloc::testing {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/slam/dense_alignment.h"
+#include "core/dense/dense_alignment.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Patches drawn from one texture at known places: alignment must find the fraction of a pixel, and say when it cannot.
-#include "core/slam/patch_alignment.h"
+#include "core/dense/patch_alignment.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <numbers>
 #include <random>
 
-#include "tests/slam/generated_texture.h"
+#include "tests/dense/generated_texture.h"
 
 namespace camloc {
 namespace {

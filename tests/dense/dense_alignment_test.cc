@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Dense alignment on thumbnails of a box, the motion known.
-#include "core/slam/dense_alignment.h"
+#include "core/dense/dense_alignment.h"
 
 #include <gtest/gtest.h>
 
 #include "core/slam/dead_reckoning.h"
-#include "tests/slam/generated_thumbnail.h"
+#include "tests/dense/generated_thumbnail.h"
 #include "tests/slam/generated_walk.h"
 
 namespace camloc {
