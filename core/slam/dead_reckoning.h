@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/slam/loop_options.h"
+#include "core/slam/loops/loop_options.h"
 #include "core/slam/slam_map.h"
 
 namespace camloc {

@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "core/slam/landmark_set.h"
-#include "core/slam/place_index.h"
+#include "core/slam/loops/place_index.h"
 #include "core/slam/slam_map.h"
 #include "core/slam/view_registration.h"
 

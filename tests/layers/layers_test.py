@@ -24,9 +24,10 @@ ALLOWED["core/registration"] = ["core/base", "core/geometry", "core/features"]
 ALLOWED["core/optimize"] = ["core/base", "core/geometry"]
 ALLOWED["core/dense"] = ["core/base", "core/geometry", "core/features", "core/registration"]
 ALLOWED["core/slam"] = [*CORE[:7], "core/optimize", "core/dense"]
+ALLOWED["core/merge"] = [*ALLOWED["core/slam"], "core/slam"]
 ALLOWED["drivers"] = ["core/base", "core/geometry", "core/io"]
 ALLOWED["daemon"] = ["drivers", *CORE, *LCM_TYPES]
-ALLOWED["tools"] = ["drivers", *CORE, "core/optimize", "core/dense", "core/slam", *LCM_TYPES]
+ALLOWED["tools"] = ["drivers", *CORE, "core/optimize", "core/dense", "core/slam", "core/merge", *LCM_TYPES]
 
 CORE_FORBIDDEN_HEADERS = re.compile(
     r"^<(thread|future|mutex|shared_mutex|condition_variable|semaphore|latch|barrier|stop_token|pthread\.h|iostream|ostream|"

@@ -9,7 +9,7 @@
 #include "core/map/map_view.h"
 #include "core/map/map_writer.h"
 #include "tests/drivers/test_folder.h"
-#include "tests/slam/two_days.h"
+#include "tests/merge/two_days.h"
 #include "tools/camloc-map/commands.h"
 #include "tools/camloc-map/merge_pipeline.h"
 #include "tools/common/command_line.h"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Loops that must be closed, and look-alikes that must not.
-#include "core/slam/loop_closing.h"
+#include "core/slam/loops/loop_closing.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Places made of random descriptors, seen again with flipped bits.
-#include "core/slam/place_index.h"
+#include "core/slam/loops/place_index.h"
 
 #include <gtest/gtest.h>
 

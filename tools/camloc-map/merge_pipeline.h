@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/base/result.h"
-#include "core/slam/map_merging.h"
+#include "core/merge/map_merging.h"
 
 namespace camloc::map_tool {
 

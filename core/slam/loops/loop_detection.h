@@ -15,8 +15,8 @@
 
 #include "core/slam/dead_reckoning.h"
 #include "core/slam/landmark_set.h"
-#include "core/slam/loop_options.h"
-#include "core/slam/place_index.h"
+#include "core/slam/loops/loop_options.h"
+#include "core/slam/loops/place_index.h"
 #include "core/slam/slam_map.h"
 #include "core/slam/view_registration.h"
 

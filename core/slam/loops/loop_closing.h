@@ -12,9 +12,9 @@
 
 #include "core/optimize/pose_graph.h"
 #include "core/slam/dead_reckoning.h"
-#include "core/slam/loop_detection.h"
-#include "core/slam/loop_options.h"
-#include "core/slam/place_index.h"
+#include "core/slam/loops/loop_detection.h"
+#include "core/slam/loops/loop_options.h"
+#include "core/slam/loops/place_index.h"
 #include "core/slam/slam_map.h"
 #include "core/slam/view_registration.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/map/map_data.h"
-#include "core/slam/map_registration.h"
+#include "core/merge/map_registration.h"
 
 namespace camloc {
 

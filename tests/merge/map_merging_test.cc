@@ -3,14 +3,14 @@
 //
 // Two generated days: the motion between their maps is found, drift is bent away, the same points become one landmark, and what
 // does not fit together is refused.
-#include "core/slam/map_merging.h"
+#include "core/merge/map_merging.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "core/map/map_writer.h"
-#include "tests/slam/two_days.h"
+#include "tests/merge/two_days.h"
 
 namespace camloc {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/slam/map_merging.h"
+#include "core/merge/map_merging.h"
 
 #include <algorithm>
 #include <cmath>

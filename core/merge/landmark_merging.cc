@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/slam/landmark_merging.h"
+#include "core/merge/landmark_merging.h"
 
 #include <algorithm>
 #include <array>

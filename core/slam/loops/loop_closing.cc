@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/slam/loop_closing.h"
+#include "core/slam/loops/loop_closing.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/slam/map_registration.h"
+#include "core/merge/map_registration.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "core/slam/keyframe_view.h"
+#include "core/merge/keyframe_view.h"
 
 namespace camloc {
 namespace {

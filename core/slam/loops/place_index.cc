@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/slam/place_index.h"
+#include "core/slam/loops/place_index.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,9 +9,9 @@
 #include <cstdint>
 
 #include "core/mapmaking/map_assembly.h"
-#include "core/slam/landmark_merging.h"
-#include "core/slam/map_alignment.h"
-#include "core/slam/map_registration.h"
+#include "core/merge/landmark_merging.h"
+#include "core/merge/map_alignment.h"
+#include "core/merge/map_registration.h"
 
 namespace camloc {
 
