@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string>
 
-#include "tools/camloc-map/cloud_file.h"
+#include "tools/mapping/cloud/cloud_file.h"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "tests/fuzz/scratch_folder.h"
-#include "tools/camloc-map/colmap_model.h"
+#include "tools/mapping/colmap/colmap_model.h"
 
 namespace {
 

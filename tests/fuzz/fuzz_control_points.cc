@@ -9,8 +9,8 @@
 #include <set>
 #include <string>
 
-#include "tools/camloc-map/control_points.h"
-#include "tools/camloc-map/georef_fit.h"
+#include "tools/mapping/site/control_points.h"
+#include "tools/mapping/site/georef_fit.h"
 
 namespace {
 

@@ -9,11 +9,11 @@
 
 #include "core/io/camera_file.h"
 #include "core/map/map_view.h"
-#include "tools/camloc-map/build_report.h"
 #include "tools/camloc-map/commands.h"
-#include "tools/camloc-map/map_pipeline.h"
 #include "tools/common/command_line.h"
 #include "tools/common/output_path.h"
+#include "tools/mapping/build/build_report.h"
+#include "tools/mapping/build/map_pipeline.h"
 
 namespace camloc::map_tool {
 namespace {

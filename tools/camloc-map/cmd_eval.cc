@@ -11,16 +11,16 @@
 #include "core/io/camera_file.h"
 #include "core/io/image_writer.h"
 #include "core/io/sequence.h"
-#include "tools/camloc-map/cloud_file.h"
 #include "tools/camloc-map/commands.h"
-#include "tools/camloc-map/dense_cloud.h"
-#include "tools/camloc-map/eval_pictures.h"
-#include "tools/camloc-map/eval_report.h"
-#include "tools/camloc-map/evaluation.h"
-#include "tools/camloc-map/posed_frames.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/progress_line.h"
 #include "tools/common/trajectory_file.h"
+#include "tools/mapping/build/posed_frames.h"
+#include "tools/mapping/cloud/cloud_file.h"
+#include "tools/mapping/eval/dense_cloud.h"
+#include "tools/mapping/eval/eval_pictures.h"
+#include "tools/mapping/eval/eval_report.h"
+#include "tools/mapping/eval/evaluation.h"
 
 namespace camloc::map_tool {
 namespace {

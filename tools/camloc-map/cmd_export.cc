@@ -9,8 +9,8 @@
 
 #include "core/io/replace_file.h"
 #include "tools/camloc-map/commands.h"
-#include "tools/camloc-map/map_export.h"
 #include "tools/common/output_path.h"
+#include "tools/mapping/colmap/map_export.h"
 
 namespace camloc::map_tool {
 namespace {

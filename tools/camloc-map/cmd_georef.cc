@@ -13,13 +13,13 @@
 #include "core/map/map_view.h"
 #include "core/map/map_writer.h"
 #include "tools/camloc-map/commands.h"
-#include "tools/camloc-map/control_points.h"
-#include "tools/camloc-map/frame_localization.h"
-#include "tools/camloc-map/georef_fit.h"
-#include "tools/camloc-map/georef_report.h"
 #include "tools/common/command_line.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/output_path.h"
+#include "tools/mapping/site/control_points.h"
+#include "tools/mapping/site/frame_localization.h"
+#include "tools/mapping/site/georef_fit.h"
+#include "tools/mapping/site/georef_report.h"
 
 namespace camloc::map_tool {
 namespace {

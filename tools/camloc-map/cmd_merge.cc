@@ -8,9 +8,9 @@
 
 #include "core/map/map_unpack.h"
 #include "tools/camloc-map/commands.h"
-#include "tools/camloc-map/merge_pipeline.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/output_path.h"
+#include "tools/mapping/build/merge_pipeline.h"
 
 namespace camloc::map_tool {
 namespace {

@@ -9,8 +9,8 @@
 #include "core/io/image_writer.h"
 #include "core/io/sequence.h"
 #include "tools/camloc-map/commands.h"
-#include "tools/camloc-map/map_picture.h"
 #include "tools/common/output_path.h"
+#include "tools/mapping/picture/map_picture.h"
 
 namespace camloc::map_tool {
 namespace {

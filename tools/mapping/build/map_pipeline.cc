@@ -1,0 +1,292 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/mapping/build/map_pipeline.h"
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <unordered_map>
+
+#include "core/map/map_writer.h"
+#include "tools/common/frame_reading.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/progress_line.h"
+#include "tools/common/trajectory_file.h"
+#include "tools/mapping/build/merge_pipeline.h"
+#include "tools/mapping/build/view_log.h"
+#include "tools/mapping/build/walk_tracking.h"
+
+namespace camloc::map_tool {
+namespace {
+
+using tools::InterruptGuard;
+using tools::ProgressLine;
+
+constexpr std::uint32_t kMinSegmentKeyframes = 4;   // a shorter stretch is no sub-map
+
+Status interrupted_status(const std::string& map_path) {
+  const bool is_there = std::filesystem::exists(map_path);
+  return {ErrorCode::kIo, "interrupted; " + map_path + (is_there ? " is unchanged" : " was not written")};
+}
+
+std::string folder_name(const std::string& folder) {
+  return std::filesystem::weakly_canonical(folder).filename().string().substr(0, 63);
+}
+
+/// out.cmap, out.2.cmap, out.3.cmap, ...
+std::string segment_path(const std::string& map_path, std::size_t number) {
+  if (number == 0) return map_path;
+  const std::filesystem::path path(map_path);
+  return (path.parent_path() / (path.stem().string() + "." + std::to_string(number + 1) + path.extension().string())).string();
+}
+
+/// What is going to be merged is chosen from once, after merging.
+MapBuildOptions recording_options(const BuildRequest& request) {
+  MapBuildOptions options = request.map;
+  if (!request.extend_path.empty()) options.max_bytes = 0;
+  return options;
+}
+
+Status extend_map(const BuildRequest& request, const MapData& recorded, BuildSummary* summary) {
+  summary->merge.emplace().map_b = request.frames.sequence;
+  MapMergeOptions options;
+  options.map.max_bytes = request.map.max_bytes;
+  const Status merged = merge_into(request.extend_path, recorded, options, request.map_path, &*summary->merge);
+  return merged.code() == ErrorCode::kUnavailable ? interrupted_status(request.map_path) : merged;
+}
+
+Status finish_map(const BuildRequest& request, const std::string& name, const std::string& path, const std::optional<WcsDatum>& datum,
+                  const MapUncertainty& bend, MapBuilder* builder, BuildSummary* summary) {
+  auto map = builder->finish(&summary->build);
+  if (!map.is_ok()) return map.status();
+  summary->consistency_sigma_m = map->pose_sigma_m;
+  summary->consistency_sigma_rad = map->pose_sigma_rad;
+  summary->bend = bend;
+  map->pose_sigma_m = std::hypot(map->pose_sigma_m, bend.sigma_m);
+  map->pose_sigma_rad = std::hypot(map->pose_sigma_rad, bend.sigma_rad);
+  map->name = name;
+  map->wcs = datum;
+  const bool is_extension = !request.extend_path.empty() && path == request.map_path;
+  const Status written = is_extension ? extend_map(request, map.value(), summary) : write_map(map.value(), path);
+  if (!written.is_ok()) return written;
+  summary->map_path = path;
+  return Status::ok();
+}
+
+// --- Poses are given -------------------------------------------------------------------------------------------------
+
+/// Feeds every posed frame to the builder. Broken frames are counted, a wrong image size ends the build.
+Status add_frames(const PosedFrames& frames, MapBuilder* builder, BuildSummary* summary, ProgressLine* progress) {
+  auto source = open_frame_source(frames.url);
+  if (!source.is_ok()) return source.status();
+  std::uint64_t done = 0;
+  const auto add = [&](FrameBuffer& buffer) {
+    progress->show(++done, std::to_string(builder->progress().num_landmarks_before) + " landmarks");
+    const auto pose = frames.T_map_camera_of_frame.find(buffer.sequence);
+    if (pose == frames.T_map_camera_of_frame.end()) return Status::ok();
+    if (!buffer.depth.pixels.empty() && buffer.depth.width > 0) return builder->add_frame(buffer.view(), pose->second);
+    ++summary->num_without_depth;
+    return Status::ok();
+  };
+  auto counts = tools::read_frames(*source.value(), add, InterruptGuard::is_interrupted);
+  if (!counts) return counts.status();
+  summary->reading = std::move(counts).value();
+  return Status::ok();
+}
+
+Status build_from_poses(const BuildRequest& request, BuildSummary* summary) {
+  const auto frames = find_posed_frames(request.frames, request.camera);
+  if (!frames.is_ok()) return frames.status();
+  summary->num_recorded = frames->num_recorded;
+  summary->num_selected = frames->num_selected;
+  summary->num_without_pose = frames->num_without_pose;
+  summary->model_scale = frames->scale;
+  MapBuilder builder(request.camera, recording_options(request));
+  ProgressLine progress(frames->T_map_camera_of_frame.size());
+  if (const Status added = add_frames(frames.value(), &builder, summary, &progress); !added.is_ok()) return added;
+  if (InterruptGuard::is_interrupted()) return interrupted_status(request.map_path);
+  if (summary->reading.are_all_corrupt()) return tools::all_frames_corrupt(summary->reading);
+  progress.say("choosing landmarks and keyframes, training words ...");
+  return finish_map(request, request.name.empty() ? folder_name(frames->folder) : request.name, request.map_path, std::nullopt, {}, &builder,
+                    summary);
+}
+
+// --- SLAM finds the poses --------------------------------------------------------------------------------------------
+
+/// A walk on its way to a map.
+struct Walk {
+  SelectedFrames frames;
+  WalkRequest pass;
+  std::optional<Survey> survey;
+  WalkEnd end;
+  SlamResult result;                ///< where the camera was
+  std::optional<WcsDatum> datum;    ///< where the largest segment lies in the site
+};
+
+Result<Walk> prepare_walk(const BuildRequest& request) {
+  Walk walk;
+  const auto frames = find_frames(request.frames);
+  if (!frames.is_ok()) return frames.status();
+  if (!frames->has_depth) return Status(ErrorCode::kInvalid, request.frames.sequence + ": has no depth images; a map needs depth");
+  walk.frames = frames.value();
+  SlamOptions slam = request.slam;
+  if (!request.survey.points_path.empty()) {
+    auto survey = read_survey(request.survey, walk.frames.folder, request.camera);
+    if (!survey.is_ok()) return survey.status();
+    walk.survey = std::move(survey).value();
+    slam.required_keyframes = frames_of(*walk.survey);
+  }
+  walk.pass = {walk.frames.url, walk.frames.num_selected, request.camera, request.map.orb, slam, view_log_path(request.map_path),
+               request.is_resumed};
+  return walk;
+}
+
+/// The first pass, and everything that is known only after it: poses, refusals, weak spots.
+Status find_poses(const BuildRequest& request, Slam* slam, Walk* walk, BuildSummary* summary) {
+  WalkCheck check(request.camera);
+  auto end = track_walk(walk->pass, slam, &check);
+  if (!end.is_ok()) return end.status();
+  walk->end = std::move(end).value();
+  // A map that is extended is not touched by half a walk.
+  if (walk->end.is_interrupted && !request.extend_path.empty())
+    return interrupted_status(request.map_path);
+  summary->is_partial = walk->end.is_interrupted;
+  summary->reading = walk->end.reading;
+  summary->num_without_depth = walk->end.num_without_depth;
+  const ProgressLine progress(0, "adjusting");
+  walk->result = slam->finish([&](int iteration, double) {
+    progress.say("adjusting all keyframes and landmarks, iteration " + std::to_string(iteration) + " ...");
+    return true;
+  });
+  Status usable = check.verdict(walk->result);
+  if (summary->reading.are_all_corrupt()) usable = tools::all_frames_corrupt(summary->reading);
+  if (usable.is_ok() && walk->result.segments.empty())
+    usable = {ErrorCode::kInvalid, request.frames.sequence + ": no frame shows enough texture with depth to begin a map"};
+  if (!usable.is_ok()) {
+    if (walk->end.is_interrupted) return interrupted_status(request.map_path);   // too early to tell, --resume will
+    std::filesystem::remove(walk->pass.log_path);
+    return usable;
+  }
+  summary->slam = SlamSummary{slam->counts(), walk->result.segments.front().fit, check.weak_spots(), check.num_stamp_jumps(),
+                              walk->end.num_resumed, "", std::nullopt};
+  return Status::ok();
+}
+
+/// Site coordinates from control points; else z up, where something says which way that is.
+Status place_walk(const BuildRequest& request, Slam* slam, Walk* walk, BuildSummary* summary) {
+  if (walk->survey) {
+    summary->survey = GeorefSummary{};
+    summary->survey->map_path = summary->survey->out_path = request.map_path;
+    walk->datum = adjust_to_survey(request.survey, *walk->survey, request.camera, slam, &walk->result, &*summary->survey);
+    summary->survey->is_written = walk->datum.has_value();
+    summary->slam->fit = walk->result.segments.front().fit;
+    if (walk->datum) return Status::ok();
+  }
+  if (!request.is_levelled) return Status::ok();
+  const auto up = find_up(walk->result, walk->end.surfaces, walk->frames.folder, request.accelerometer_path);
+  if (!up.is_ok()) {
+    summary->slam->up_problem = up.status().message();
+    return request.accelerometer_path.empty() ? Status::ok() : up.status();
+  }
+  level(up->up_map, walk->result.segments.front().id, &walk->result);
+  summary->slam->up = up.value();
+  return Status::ok();
+}
+
+/// What every pose in the maps will be uncertain by.
+void measure_bend(const Slam& slam, SlamResult* result) {
+  ProgressLine(0, "adjusting").say("comparing maps of half of the sightings each ...");
+  for (SlamResult::Segment& segment : result->segments) {
+    if (segment.num_keyframes >= kMinSegmentKeyframes) segment.uncertainty = slam.uncertainty(segment.id);
+  }
+}
+
+/// The second pass: what was seen, from where it was seen, becomes a map.
+Status map_segment(const BuildRequest& request, const Walk& walk, std::size_t number, BuildSummary* summary) {
+  std::unordered_map<std::uint64_t, const SlamPose*> pose_of_frame;
+  for (const SlamPose& pose : walk.result.poses) {
+    if (pose.segment == walk.result.segments[number].id) pose_of_frame.emplace(pose.frame, &pose);
+  }
+  auto log = ViewLogReader::open(walk.pass.log_path, walk_identity(walk.pass));
+  if (!log.is_ok()) return log.status();
+  MapBuilder builder(request.camera, recording_options(request));
+  ProgressLine progress(pose_of_frame.size(), "mapping view");
+  LoggedView logged;
+  std::uint64_t done = 0;
+  while (log->next(&logged).is_ok()) {
+    const auto pose = pose_of_frame.find(logged.frame);
+    if (pose == pose_of_frame.end()) continue;
+    logged.view.T_map_camera = pose->second->T_map_camera;
+    builder.add_view(logged.view);
+    progress.show(++done, std::to_string(builder.progress().num_landmarks_before) + " landmarks");
+  }
+  if (done < pose_of_frame.size()) {
+    return {ErrorCode::kCorrupt, walk.pass.log_path + ": holds " + std::to_string(done) + " of " + std::to_string(pose_of_frame.size()) +
+                                     " views; is another build of the same map running?"};
+  }
+  progress.say("choosing landmarks and keyframes, training words ...");
+  const std::string name = request.name.empty() ? folder_name(walk.frames.folder) : request.name;
+  return finish_map(request, name, segment_path(request.map_path, number), number == 0 ? walk.datum : std::nullopt,
+                    walk.result.segments[number].uncertainty, &builder, summary);
+}
+
+/// One map a segment, the largest at the path the user asked for. Returns an error only for that one.
+Status write_segments(const BuildRequest& request, const Walk& walk, BuildSummary* summary) {
+  for (std::size_t number = walk.result.segments.size(); number-- > 0;) {
+    const SlamResult::Segment& segment = walk.result.segments[number];
+    if (number == 0) return map_segment(request, walk, number, summary);
+    SubmapSummary submap{"", segment.num_keyframes, segment.num_views};
+    if (segment.num_keyframes >= kMinSegmentKeyframes) {
+      BuildSummary of_segment;
+      if (map_segment(request, walk, number, &of_segment).is_ok()) submap.map_path = of_segment.map_path;
+    }
+    summary->submaps.push_back(submap);
+  }
+  return Status::ok();
+}
+
+Status write_trajectory(const BuildRequest& request, const SlamResult& result, std::uint64_t num_frames) {
+  if (request.trajectory_path.empty() || result.segments.empty()) return Status::ok();
+  tools::EstimatedTrajectory trajectory;
+  trajectory.num_frames = num_frames;
+  if (request.camera.poses_are_of_depth_camera) trajectory.T_color_depth = request.camera.T_color_depth;
+  for (const SlamPose& pose : result.poses) {
+    if (pose.segment == result.segments.front().id) trajectory.poses.push_back({pose.stamp_ns, pose.T_map_camera, std::nullopt});
+  }
+  return tools::write_text_file(request.trajectory_path, format_trajectory(trajectory));
+}
+
+Status build_from_walk(const BuildRequest& request, BuildSummary* summary) {
+  auto prepared = prepare_walk(request);
+  if (!prepared.is_ok()) return prepared.status();
+  Walk walk = std::move(prepared).value();
+  summary->num_recorded = walk.frames.num_recorded;
+  summary->num_selected = walk.frames.num_selected;
+  {
+    Slam slam(request.camera, walk.pass.slam);   // gone before the map takes its place in memory
+    if (const Status found = find_poses(request, &slam, &walk, summary); !found.is_ok()) return found;
+    if (const Status placed = place_walk(request, &slam, &walk, summary); !placed.is_ok()) return placed;
+    measure_bend(slam, &walk.result);
+  }
+  if (const Status written = write_segments(request, walk, summary); !written.is_ok()) return written;
+  if (const Status written = write_trajectory(request, walk.result, summary->slam->counts.num_views); !written.is_ok()) return written;
+  if (!summary->is_partial) std::filesystem::remove(walk.pass.log_path);
+  return Status::ok();
+}
+
+}  // namespace
+
+std::string view_log_path(const std::string& map_path) { return map_path + ".views"; }
+
+Status build_map(const BuildRequest& request, BuildSummary* summary) {
+  const auto start = std::chrono::steady_clock::now();
+  const InterruptGuard guard;
+  summary->map_path = request.map_path;
+  summary->sequence = request.frames.sequence;
+  summary->camera = request.camera.name;
+  const Status built = request.frames.poses.empty() ? build_from_walk(request, summary) : build_from_poses(request, summary);
+  summary->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return built;
+}
+
+}  // namespace camloc::map_tool

@@ -1,0 +1,134 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/mapping/build/posed_frames.h"
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "core/io/frame_selection.h"
+#include "core/io/sequence.h"
+#include "tools/mapping/colmap/colmap_poses.h"
+
+namespace camloc::map_tool {
+namespace {
+
+Result<std::string> folder_of(const std::string& url) {
+  const std::string scheme = "replay://";
+  const std::size_t separator = url.find("://");
+  if (separator == std::string::npos) return url;
+  if (url.compare(0, scheme.size(), scheme) != 0) {
+    return {ErrorCode::kInvalid, "--sequence " + url + ": a map is made from a recording; give replay://DIR or a folder"};
+  }
+  const std::string rest = url.substr(scheme.size());
+  if (rest.find('?') != std::string::npos) {
+    return {ErrorCode::kInvalid, "--sequence " + url + ": takes no parameters; choose frames with --frames and --exclude"};
+  }
+  return rest;
+}
+
+constexpr std::string_view kColmapScheme = "colmap:";
+
+/// Per frame of the recording; sets `scale` where the poses had to be scaled.
+Result<std::vector<std::optional<Rigid3>>> recorded_poses(const PosedFramesRequest& request, const Sequence& sequence,
+                                                          const RgbdCamera& camera, std::optional<ModelScale>* scale) {
+  if (request.poses == "embedded") return read_embedded_poses(sequence);
+  if (request.poses.starts_with(kColmapScheme)) {
+    if (request.pose_camera == PoseCamera::kDepth) {
+      return {ErrorCode::kInvalid, "--poses-of depth: a COLMAP model has the poses of colour images; leave it out"};
+    }
+    auto poses = read_colmap_poses(request.poses.substr(kColmapScheme.size()), sequence, camera);
+    if (!poses.is_ok()) return poses.status();
+    *scale = poses.value().scale;
+    return std::move(poses.value().T_map_camera);
+  }
+  const auto trajectory = read_tum_trajectory(request.poses);
+  if (!trajectory.is_ok()) return trajectory.status();
+  std::vector<std::optional<Rigid3>> result;
+  for (const SequenceFrame& frame : sequence.frames) result.push_back(pose_at(trajectory.value(), frame.stamp_ns));
+  return result;
+}
+
+// "start:stop:step" runs of equal distance, as short as that gets; `frames` ascends.
+std::string slices_of(const std::vector<std::uint64_t>& frames) {
+  std::string text;
+  for (std::size_t i = 0; i < frames.size();) {
+    const std::uint64_t start = frames[i];
+    std::uint64_t last = start, step = 1;
+    if (++i < frames.size()) {
+      step = frames[i] - start;
+      for (; i < frames.size() && frames[i] == last + step; ++i) last = frames[i];
+    }
+    if (!text.empty()) text += ",";
+    text += std::to_string(start) + ":" + std::to_string(last + 1) + ":" + std::to_string(step);
+  }
+  return text;
+}
+
+std::string url_of(const std::string& folder, const std::vector<std::uint64_t>& frames) {
+  return "replay://" + folder + "?frames=" + slices_of(frames);
+}
+
+struct Selection {
+  std::string folder;
+  Sequence sequence;
+  std::vector<std::size_t> frames;   ///< indices in the sequence, ascending
+};
+
+Result<Selection> select(const PosedFramesRequest& request) {
+  const auto folder = folder_of(request.sequence);
+  if (!folder.is_ok()) return folder.status();
+  auto sequence = read_sequence(folder.value());
+  if (!sequence.is_ok()) return sequence.status();
+  auto frames = select_frames(request.include, request.exclude, sequence->frames.size());
+  if (!frames.is_ok()) return frames.status();
+  return Selection{folder.value(), std::move(sequence).value(), std::move(frames).value()};
+}
+
+}  // namespace
+
+Result<SelectedFrames> find_frames(const PosedFramesRequest& request) {
+  const auto selection = select(request);
+  if (!selection.is_ok()) return selection.status();
+  SelectedFrames result;
+  result.folder = selection->folder;
+  result.num_recorded = selection->sequence.frames.size();
+  result.num_selected = selection->frames.size();
+  for (const SequenceFrame& frame : selection->sequence.frames) result.has_depth = result.has_depth || !frame.depth_path.empty();
+  result.url = url_of(selection->folder, {selection->frames.begin(), selection->frames.end()});
+  return result;
+}
+
+Result<PosedFrames> find_posed_frames(const PosedFramesRequest& request, const RgbdCamera& camera) {
+  const auto selection = select(request);
+  if (!selection.is_ok()) return selection.status();
+  PosedFrames result;
+  const auto poses = recorded_poses(request, selection->sequence, camera, &result.scale);
+  if (!poses.is_ok()) return poses.status();
+
+  const bool are_embedded = request.poses == "embedded";
+  const bool are_of_depth = request.pose_camera == PoseCamera::kDepth ||
+                            (request.pose_camera == PoseCamera::kAuto && are_embedded && camera.poses_are_of_depth_camera);
+  const Rigid3 T_recorded_color = are_of_depth ? camera.T_color_depth.inverse() : Rigid3{};
+  result.folder = selection->folder;
+  result.num_recorded = selection->sequence.frames.size();
+  result.num_selected = selection->frames.size();
+  for (const std::size_t index : selection->frames) {
+    if (const auto& T_map_recorded = poses.value()[index]) {
+      result.T_map_camera_of_frame.emplace(index, *T_map_recorded * T_recorded_color);
+    } else {
+      ++result.num_without_pose;
+    }
+  }
+  if (result.T_map_camera_of_frame.empty()) {
+    return {ErrorCode::kInvalid,
+            request.sequence + ": none of the " + std::to_string(result.num_selected) + " selected frames has a pose in " +
+                (are_embedded ? std::string("the recording") : request.poses) + "; check --frames and the stamps of --poses"};
+  }
+  std::vector<std::uint64_t> with_pose;
+  for (const auto& [frame, T_map_camera] : result.T_map_camera_of_frame) with_pose.push_back(frame);
+  result.url = url_of(selection->folder, with_pose);
+  return result;
+}
+
+}  // namespace camloc::map_tool

@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/mapping/build/view_log.h"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+
+namespace camloc::map_tool {
+namespace {
+
+constexpr std::array<char, 8> kMagic = {'C', 'M', 'V', 'I', 'E', 'W', 'S', '\n'};
+constexpr std::uint32_t kVersion = 2, kMaxFeatures = 1U << 20, kMaxSurface = 1U << 20, kMaxCells = 1U << 20;
+
+struct LogHeader {
+  std::array<char, 8> magic = kMagic;
+  std::uint32_t version = kVersion, reserved = 0;
+  std::uint64_t identity = 0;
+  std::array<std::uint64_t, 5> padding{};
+};
+static_assert(sizeof(LogHeader) == 64);
+
+struct RecordHeader {
+  std::uint64_t frame = 0;
+  std::int64_t stamp_ns = 0;
+  std::uint32_t num_features = 0, num_surface = 0;
+  std::uint32_t num_patches = 0;   ///< as many as features, or none
+  std::uint32_t num_cells = 0;     ///< of the thumbnail
+  std::uint16_t thumbnail_width = 0, cell_px = 0;
+  std::uint32_t reserved = 0;
+  std::uint64_t hash = 0;   ///< of the fields above and the arrays
+};
+static_assert(sizeof(RecordHeader) == 48);
+
+/// A keypoint without the padding of the struct.
+struct PackedKeypoint {
+  float u, v, angle_rad, response;
+  std::uint32_t level;
+};
+
+template <typename T>
+void put(const std::vector<T>& values, std::vector<char>* bytes) {
+  const auto* begin = reinterpret_cast<const char*>(values.data());
+  bytes->insert(bytes->end(), begin, begin + values.size() * sizeof(T));
+}
+
+template <typename T>
+const char* get(const char* from, std::size_t count, std::vector<T>* values) {
+  values->resize(count);
+  if (count > 0) std::memcpy(static_cast<void*>(values->data()), from, count * sizeof(T));
+  return from + count * sizeof(T);
+}
+
+std::size_t array_bytes(const RecordHeader& header) {
+  const std::size_t per_feature = sizeof(PackedKeypoint) + sizeof(Descriptor) + sizeof(Eigen::Vector2f) + sizeof(float);
+  return header.num_features * per_feature + header.num_surface * sizeof(Eigen::Vector3f) +
+         header.num_patches * sizeof(FeaturePatch) + header.num_cells * 2 * sizeof(std::uint16_t);
+}
+
+std::uint64_t hash_of(RecordHeader header, const std::vector<char>& bytes) {
+  header.hash = XXH3_64bits(bytes.data(), bytes.size());
+  return XXH3_64bits(&header, sizeof header);
+}
+
+Status io_error(const std::string& path, const std::string& what) {
+  const int error = errno;
+  return {ErrorCode::kIo, path + ": " + what + (error == 0 ? std::string() : std::string(": ") + std::strerror(error))};
+}
+
+}  // namespace
+
+Result<ViewLogWriter> ViewLogWriter::create(const std::string& path, std::uint64_t identity) {
+  ViewLogWriter writer;
+  writer.path_ = path;
+  errno = 0;
+  writer.file_.open(path, std::ios::binary | std::ios::trunc);
+  LogHeader header;
+  header.identity = identity;
+  writer.file_.write(reinterpret_cast<const char*>(&header), sizeof header);
+  if (!writer.file_) return io_error(path, "cannot be written");
+  return writer;
+}
+
+Result<ViewLogWriter> ViewLogWriter::append(const std::string& path, std::uint64_t size_bytes) {
+  ViewLogWriter writer;
+  writer.path_ = path;
+  std::error_code error;
+  std::filesystem::resize_file(path, size_bytes, error);
+  if (error) return Status(ErrorCode::kIo, path + ": cannot be written: " + error.message());
+  errno = 0;
+  writer.file_.open(path, std::ios::binary | std::ios::app);
+  if (!writer.file_) return io_error(path, "cannot be written");
+  return writer;
+}
+
+Status ViewLogWriter::add(const LoggedView& logged) {
+  const ViewFeatures& view = logged.view;
+  std::vector<PackedKeypoint> keypoints;
+  keypoints.reserve(view.size());
+  for (const Keypoint& k : view.features.keypoints) keypoints.push_back({k.u, k.v, k.angle_rad, k.response, k.level});
+  bytes_.clear();
+  put(keypoints, &bytes_);
+  put(view.features.descriptors, &bytes_);
+  put(view.normalized, &bytes_);
+  put(view.depth_m, &bytes_);
+  put(logged.surface_m, &bytes_);
+  put(view.patches, &bytes_);
+  put(logged.thumbnail.grey, &bytes_);
+  put(logged.thumbnail.depth, &bytes_);
+  RecordHeader header;
+  header.frame = logged.frame;
+  header.stamp_ns = view.stamp_ns;
+  header.num_features = static_cast<std::uint32_t>(view.size());
+  header.num_surface = static_cast<std::uint32_t>(logged.surface_m.size());
+  header.num_patches = static_cast<std::uint32_t>(view.patches.size());
+  header.num_cells = static_cast<std::uint32_t>(logged.thumbnail.grey.size());
+  header.thumbnail_width = static_cast<std::uint16_t>(logged.thumbnail.width);
+  header.cell_px = static_cast<std::uint16_t>(logged.thumbnail.cell_px);
+  header.hash = hash_of(header, bytes_);
+  errno = 0;
+  file_.write(reinterpret_cast<const char*>(&header), sizeof header);
+  file_.write(bytes_.data(), static_cast<std::streamsize>(bytes_.size()));
+  return file_ ? Status::ok() : io_error(path_, "cannot be written; is the disk full?");
+}
+
+Status ViewLogWriter::flush() {
+  errno = 0;
+  file_.flush();
+  return file_ ? Status::ok() : io_error(path_, "cannot be written; is the disk full?");
+}
+
+Result<ViewLogReader> ViewLogReader::open(const std::string& path, std::uint64_t identity) {
+  ViewLogReader reader;
+  reader.path_ = path;
+  std::error_code error;
+  reader.file_bytes_ = std::filesystem::file_size(path, error);
+  if (error) return Status(ErrorCode::kNotFound, path + ": " + error.message());
+  reader.file_.open(path, std::ios::binary);
+  LogHeader header;
+  reader.file_.read(reinterpret_cast<char*>(&header), sizeof header);
+  if (!reader.file_ || header.magic != kMagic || header.version != kVersion)
+    return Status(ErrorCode::kCorrupt, path + ": is no view log of this version");
+  if (header.identity != identity)
+    return Status(ErrorCode::kInvalid, path + ": belongs to a build with another recording, camera or options");
+  reader.position_ = sizeof header;
+  return reader;
+}
+
+Status ViewLogReader::next(LoggedView* logged) {
+  const Status end(ErrorCode::kEnd, path_ + ": no more views");
+  RecordHeader header;
+  if (position_ + sizeof header > file_bytes_) return end;
+  file_.read(reinterpret_cast<char*>(&header), sizeof header);
+  if (!file_ || header.num_features > kMaxFeatures || header.num_surface > kMaxSurface) return end;
+  if (header.num_patches != 0 && header.num_patches != header.num_features) return end;
+  if (header.num_cells > kMaxCells || (header.num_cells > 0 && (header.thumbnail_width == 0 || header.num_cells % header.thumbnail_width != 0))) return end;
+  const std::size_t size = array_bytes(header);
+  if (position_ + sizeof header + size > file_bytes_) return end;
+  bytes_.resize(size);
+  file_.read(bytes_.data(), static_cast<std::streamsize>(size));
+  const std::uint64_t expected = header.hash;
+  header.hash = 0;
+  if (!file_ || hash_of(header, bytes_) != expected) return end;
+  position_ += sizeof header + size;
+
+  std::vector<PackedKeypoint> keypoints;
+  ViewFeatures& view = logged->view;
+  const char* from = get(bytes_.data(), header.num_features, &keypoints);
+  from = get(from, header.num_features, &view.features.descriptors);
+  from = get(from, header.num_features, &view.normalized);
+  from = get(from, header.num_features, &view.depth_m);
+  from = get(from, header.num_surface, &logged->surface_m);
+  from = get(from, header.num_patches, &view.patches);
+  from = get(from, header.num_cells, &logged->thumbnail.grey);
+  get(from, header.num_cells, &logged->thumbnail.depth);
+  logged->thumbnail.width = header.thumbnail_width;
+  logged->thumbnail.height = header.num_cells > 0 ? static_cast<int>(header.num_cells / header.thumbnail_width) : 0;
+  logged->thumbnail.cell_px = header.cell_px;
+  view.features.keypoints.clear();
+  for (const PackedKeypoint& k : keypoints)
+    view.features.keypoints.push_back({k.u, k.v, k.angle_rad, k.response, static_cast<std::uint8_t>(k.level)});
+  view.T_map_camera = {};
+  view.stamp_ns = header.stamp_ns;
+  logged->frame = header.frame;
+  return Status::ok();
+}
+
+}  // namespace camloc::map_tool

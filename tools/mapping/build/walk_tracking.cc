@@ -1,0 +1,135 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/mapping/build/walk_tracking.h"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "core/io/camera_file.h"
+#include "tools/common/interrupt.h"
+#include "tools/common/progress_line.h"
+#include "tools/mapping/build/surface_sample.h"
+#include "tools/mapping/build/view_log.h"
+
+namespace camloc::map_tool {
+namespace {
+
+using tools::InterruptGuard;
+using tools::ProgressLine;
+
+std::string note_of(const SlamCounts& counts) {
+  std::string note = std::to_string(counts.num_keyframes) + " keyframes, " + std::to_string(counts.num_landmarks) + " landmarks";
+  if (counts.num_loops > 0) note += ", " + std::to_string(counts.num_loops) + " loops";
+  if (counts.num_segments > counts.num_joined + 1) note += ", " + std::to_string(counts.num_segments - counts.num_joined) + " segments";
+  if (counts.num_lost > 0) note += ", " + std::to_string(counts.num_lost) + " lost";
+  return note;
+}
+
+/// One walk on its way through extraction, tracking and the log.
+class Pass {
+ public:
+  Pass(const WalkRequest& request, Slam* slam, WalkCheck* check)
+      : request_(request), slam_(slam), check_(check), extractor_(request.camera, request.orb), thumbnails_(request.camera), progress_(request.num_frames) {}
+
+  /// Processes what an earlier pass has seen; says where its log ends.
+  Status replay(std::uint64_t* log_bytes) {
+    auto reader = ViewLogReader::open(request_.log_path, walk_identity(request_));
+    if (!reader.is_ok()) return reader.status();
+    LoggedView logged;
+    while (!InterruptGuard::is_interrupted() && reader->next(&logged).is_ok()) {
+      check_->see_view(logged.frame, logged.view.stamp_ns, logged.view.size(), num_with_depth(logged.view));
+      track(logged);
+      last_frame_ = logged.frame;
+      ++end_.num_resumed;
+    }
+    *log_bytes = reader->size_bytes();
+    end_.is_interrupted = InterruptGuard::is_interrupted();
+    return Status::ok();
+  }
+
+  Status run(ViewLogWriter log) {
+    auto source = open_frame_source(request_.url);
+    if (!source.is_ok()) return source.status();
+    auto counts = tools::read_frames(
+        *source.value(),
+        [&](FrameBuffer& frame) {
+          const bool is_known = end_.num_resumed > 0 && frame.sequence <= last_frame_;
+          return is_known ? Status::ok() : process(frame.view(), &log);
+        },
+        InterruptGuard::is_interrupted);
+    if (!counts.is_ok()) return counts.status();
+    end_.reading = std::move(counts).value();
+    end_.is_interrupted = InterruptGuard::is_interrupted();
+    return log.flush();
+  }
+
+  [[nodiscard]] bool is_interrupted() const { return end_.is_interrupted; }
+  [[nodiscard]] WalkEnd end() { return std::move(end_); }
+
+ private:
+  static std::size_t num_with_depth(const ViewFeatures& view) {
+    return static_cast<std::size_t>(std::count_if(view.depth_m.begin(), view.depth_m.end(), [](float z) { return z > 0; }));
+  }
+
+  Status process(const Frame& frame, ViewLogWriter* log) {
+    if (frame.depth.empty()) {
+      ++num_done_;
+      ++end_.num_without_depth;
+      return Status::ok();
+    }
+    if (const Status checked = extractor_.check(frame); !checked.is_ok()) return checked;
+    LoggedView logged{frame.sequence, extractor_.extract_with_patches(frame), thumbnails_.make(frame), sample_surface(request_.camera, frame.depth)};
+    check_->see_frame(frame, logged.view.size(), num_with_depth(logged.view));
+    if (const Status usable = check_->early_verdict(); !usable.is_ok()) return usable;
+    if (!track(logged)) logged.view.patches.clear();   // only those of keyframes are asked for again
+    return log->add(logged);
+  }
+
+  /// Whether the view has become a keyframe.
+  bool track(const LoggedView& logged) {
+    const ViewReport report = slam_->add_view(logged.frame, logged.view, logged.thumbnail);
+    check_->see_report(report);
+    if (report.is_keyframe) end_.surfaces.push_back({logged.frame, logged.surface_m});
+    progress_.show(++num_done_, note_of(slam_->counts()));
+    return report.is_keyframe;
+  }
+
+  const WalkRequest& request_;
+  Slam* slam_;
+  WalkCheck* check_;
+  ViewExtractor extractor_;
+  ThumbnailMaker thumbnails_;
+  ProgressLine progress_;
+  WalkEnd end_;
+  std::uint64_t num_done_ = 0, last_frame_ = 0;
+};
+
+}  // namespace
+
+std::uint64_t walk_identity(const WalkRequest& request) {
+  const std::string text = request.url + "\n" + format_camera_toml(request.camera) + "\n" + std::to_string(request.orb.num_features);
+  return XXH3_64bits(text.data(), text.size());
+}
+
+Result<WalkEnd> track_walk(const WalkRequest& request, Slam* slam, WalkCheck* check) {
+  Pass pass(request, slam, check);
+  std::uint64_t log_bytes = 0;
+  if (request.is_resumed) {
+    if (const Status replayed = pass.replay(&log_bytes); !replayed.is_ok()) return replayed;
+    if (pass.is_interrupted()) return pass.end();   // the rest of the log is for the next time
+  }
+  auto log = request.is_resumed ? ViewLogWriter::append(request.log_path, log_bytes)
+                                : ViewLogWriter::create(request.log_path, walk_identity(request));
+  if (!log.is_ok()) return log.status();
+  if (const Status done = pass.run(std::move(log).value()); !done.is_ok()) {
+    // What is wrong with the recording stays wrong; a full disk does not.
+    if (done.code() == ErrorCode::kInvalid || slam->counts().num_views == 0) std::filesystem::remove(request.log_path);
+    return done;
+  }
+  return pass.end();
+}
+
+}  // namespace camloc::map_tool

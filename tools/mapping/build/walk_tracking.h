@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The first pass over a walk without poses: every frame becomes a view, SLAM says where it was, the view log keeps what was
+// seen. An interrupted pass goes on from its log.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/features/orb_extractor.h"
+#include "core/geometry/camera.h"
+#include "core/slam/slam.h"
+#include "tools/common/frame_reading.h"
+#include "tools/mapping/build/walk_check.h"
+
+namespace camloc::map_tool {
+
+struct WalkRequest {
+  std::string url;                ///< for open_frame_source
+  std::uint64_t num_frames = 0;   ///< that it will deliver, 0 = unknown
+  RgbdCamera camera;
+  OrbOptions orb;
+  SlamOptions slam;
+  std::string log_path;           ///< of the view log
+  bool is_resumed = false;        ///< go on from the log
+};
+
+/// Surfaces as a keyframe saw them, in its camera frame.
+struct KeyframeSurface {
+  std::uint64_t frame = 0;
+  std::vector<Eigen::Vector3f> points_m;
+};
+
+/// How the pass ended.
+struct WalkEnd {
+  std::vector<KeyframeSurface> surfaces;
+  bool is_interrupted = false;        ///< Ctrl-C: what is there is a map of the first part
+  std::uint64_t num_resumed = 0;      ///< views that came from the log
+  tools::FrameCounts reading;         ///< of this pass, without what came from the log
+  std::uint64_t num_without_depth = 0;   ///< colour images without a depth image
+};
+
+/// What makes a log belong to a build.
+[[nodiscard]] std::uint64_t walk_identity(const WalkRequest& request);
+
+/// Feeds all frames to `slam`; `check` gathers what is wrong with them. Errors: those of the source and of the log, a frame of
+/// the wrong size.
+[[nodiscard]] Result<WalkEnd> track_walk(const WalkRequest& request, Slam* slam, WalkCheck* check);
+
+}  // namespace camloc::map_tool

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/mapping/cloud/cloud_file.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cctype>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <utility>
+
+#include "tools/mapping/cloud/cloud_formats.h"
+
+namespace camloc::map_tool {
+namespace {
+
+struct Reader {
+  Status (*read)(CloudInput*, CloudAccumulator*);
+};
+
+constexpr const char* kKnownKinds = "PLY, PCD, LAS and text tables (XYZ, PTS, CSV) are read";
+
+std::string extension_of(const std::string& name) {
+  std::string extension = std::filesystem::path(name).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+bool is_text(std::string_view bytes) {
+  return std::all_of(bytes.begin(), bytes.end(),
+                     [](char c) { return (c >= ' ' && c != '\x7f') || c == '\t' || c == '\r' || c == '\n'; });
+}
+
+Result<Reader> choose_reader(CloudInput* input) {
+  const auto bytes = input->peek(512);
+  const std::string_view start(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::string extension = extension_of(input->name());
+  if (start.empty()) return input->error(ErrorCode::kInvalid, "is empty");
+  if (start.starts_with("ASTM-E57")) {
+    return input->error(
+        ErrorCode::kUnsupported,
+        "E57 is not read; convert it: CloudCompare -O IN.e57 -C_EXPORT_FMT PLY -SAVE_CLOUDS, or pdal translate IN.e57 OUT.ply");
+  }
+  if (extension == ".laz") {
+    return input->error(ErrorCode::kUnsupported,
+                        "LAZ is not read; convert it: pdal translate IN.laz OUT.las, or with CloudCompare to LAS or PLY");
+  }
+  if (start.starts_with("LASF")) return Reader{read_las};
+  if (start.starts_with("ply\n") || start.starts_with("ply\r")) return Reader{read_ply};
+  if (start.starts_with("# .PCD") || start.starts_with("VERSION") || extension == ".pcd") return Reader{read_pcd};
+  if (is_text(start) && extension != ".ply" && extension != ".las") return Reader{read_text_cloud};
+  return input->error(ErrorCode::kUnsupported, "is no kind of point cloud that is known here; " + std::string(kKnownKinds));
+}
+
+template <typename T>
+double load(const std::byte* bytes, bool is_swapped) {
+  std::array<std::byte, sizeof(T)> raw;
+  std::memcpy(raw.data(), bytes, sizeof(T));
+  if (is_swapped) std::reverse(raw.begin(), raw.end());
+  return static_cast<double>(std::bit_cast<T>(raw));
+}
+
+}  // namespace
+
+std::size_t scalar_bytes(ScalarType type) {
+  switch (type) {
+    case ScalarType::kInt8:
+    case ScalarType::kUint8: return 1;
+    case ScalarType::kInt16:
+    case ScalarType::kUint16: return 2;
+    case ScalarType::kInt32:
+    case ScalarType::kUint32:
+    case ScalarType::kFloat32: return 4;
+    case ScalarType::kInt64:
+    case ScalarType::kUint64:
+    case ScalarType::kFloat64: return 8;
+  }
+  return 0;
+}
+
+double read_scalar(ScalarType type, const std::byte* bytes, bool is_big_endian) {
+  const bool is_swapped = is_big_endian != (std::endian::native == std::endian::big);
+  switch (type) {
+    case ScalarType::kInt8: return load<std::int8_t>(bytes, is_swapped);
+    case ScalarType::kUint8: return load<std::uint8_t>(bytes, is_swapped);
+    case ScalarType::kInt16: return load<std::int16_t>(bytes, is_swapped);
+    case ScalarType::kUint16: return load<std::uint16_t>(bytes, is_swapped);
+    case ScalarType::kInt32: return load<std::int32_t>(bytes, is_swapped);
+    case ScalarType::kUint32: return load<std::uint32_t>(bytes, is_swapped);
+    case ScalarType::kInt64: return load<std::int64_t>(bytes, is_swapped);
+    case ScalarType::kUint64: return load<std::uint64_t>(bytes, is_swapped);
+    case ScalarType::kFloat32: return load<float>(bytes, is_swapped);
+    case ScalarType::kFloat64: return load<double>(bytes, is_swapped);
+  }
+  return 0;
+}
+
+Result<PointCloud> read_cloud(std::istream& stream, const std::string& name, const CloudOptions& options,
+                              const CloudProgress& progress) {
+  CloudInput input(stream, name, progress);
+  const auto reader = choose_reader(&input);
+  if (!reader.is_ok()) return reader.status();
+  CloudAccumulator accumulator(options);
+  const Status read = reader.value().read(&input, &accumulator);
+  if (input.is_stopped()) return input.truncated("");
+  if (!read.is_ok()) return read;
+  PointCloud cloud = accumulator.finish();
+  if (cloud.num_read == 0) return input.error(ErrorCode::kInvalid, "holds no points");
+  if (cloud.points_m.empty()) {
+    return input.error(ErrorCode::kInvalid,
+                       "none of its " + std::to_string(cloud.num_read) + " points is valid (not finite, or withheld)");
+  }
+  return cloud;
+}
+
+Result<PointCloud> read_cloud(const std::string& path, const CloudOptions& options, const CloudProgress& progress) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return {ErrorCode::kNotFound, path + ": no such file"};
+  if (std::filesystem::is_directory(path, error)) return {ErrorCode::kInvalid, path + ": is a folder; give a point cloud file"};
+  if (!std::filesystem::is_regular_file(path, error)) return {ErrorCode::kInvalid, path + ": is no regular file"};
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) return {ErrorCode::kIo, path + ": cannot be read; check its permissions"};
+  return read_cloud(stream, path, options, progress);
+}
+
+}  // namespace camloc::map_tool

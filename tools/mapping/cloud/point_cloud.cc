@@ -1,0 +1,117 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/mapping/cloud/point_cloud.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/order_statistics.h"
+
+namespace camloc::map_tool {
+namespace {
+
+constexpr std::size_t kPointsForOrigin = 4096;  // their median: an invalid return at (0, 0, 0) may come first
+constexpr std::size_t kCompactAt = std::size_t{1} << 20;
+constexpr double kMaxCells = 1e9;  // from the origin; fits 32 bits
+constexpr double kMaxReachM = 1e7;
+constexpr std::size_t kMaxPercentileSamples = 200000;
+
+}  // namespace
+
+std::array<Eigen::Vector3d, 2> PointCloud::bounds_m() const {
+  std::array<Eigen::Vector3d, 2> bounds{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  if (points_m.empty()) return bounds;
+  const std::size_t step = points_m.size() / kMaxPercentileSamples + 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<float> values;
+    for (std::size_t i = 0; i < points_m.size(); i += step) values.push_back(points_m[i][axis]);
+    const std::size_t low = values.size() / 200;
+    for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+      const std::size_t rank = side == 0 ? low : values.size() - 1 - low;
+      std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rank), values.end());
+      bounds[side][axis] = static_cast<double>(values[rank]);
+    }
+  }
+  return bounds;
+}
+
+CloudAccumulator::CloudAccumulator(const CloudOptions& options) : options_(options), compact_at_(kCompactAt) {}
+
+void CloudAccumulator::add(const Eigen::Vector3d& p) {
+  ++cloud_.num_read;
+  const Eigen::Vector3d p_m = options_.unit_m * p;
+  if (!p_m.allFinite()) {
+    ++cloud_.num_invalid;
+  } else if (is_started_) {
+    store(p_m);
+  } else {
+    first_points_m_.push_back(p_m);
+    if (first_points_m_.size() >= kPointsForOrigin) start();
+  }
+}
+
+void CloudAccumulator::start() {
+  is_started_ = true;
+  for (int axis = 0; axis < 3 && !first_points_m_.empty(); ++axis) {
+    std::vector<double> values;
+    for (const Eigen::Vector3d& p : first_points_m_) values.push_back(p[axis]);
+    cloud_.origin_m[axis] = std::floor(upper_median(std::move(values)));
+  }
+  for (const Eigen::Vector3d& p : first_points_m_) store(p);
+  first_points_m_ = {};
+}
+
+void CloudAccumulator::store(const Eigen::Vector3d& p_m) {
+  const Eigen::Vector3d relative = p_m - cloud_.origin_m;
+  const double reach_m = std::min(kMaxReachM, kMaxCells * options_.voxel_m);
+  if (!(relative.cwiseAbs().maxCoeff() < reach_m)) {
+    ++cloud_.num_invalid;
+    return;
+  }
+  Voxel voxel{{}, 1, {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cell = std::floor(relative[axis] / options_.voxel_m);
+    voxel.cell[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(cell);
+    voxel.sum_m[axis] = static_cast<float>(relative[axis] - cell * options_.voxel_m);
+  }
+  voxels_.push_back(voxel);
+  if (voxels_.size() >= compact_at_) compact();
+}
+
+void CloudAccumulator::compact() {
+  const auto by_cell = [](const Voxel& a, const Voxel& b) { return a.cell < b.cell; };
+  const auto middle = voxels_.begin() + static_cast<std::ptrdiff_t>(num_compact_);
+  std::stable_sort(middle, voxels_.end(), by_cell);
+  std::inplace_merge(voxels_.begin(), middle, voxels_.end(), by_cell);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < voxels_.size(); ++i) {
+    if (kept > 0 && voxels_[kept - 1].cell == voxels_[i].cell) {
+      Voxel& into = voxels_[kept - 1];
+      into.sum_m += voxels_[i].sum_m;
+      into.count += std::min(voxels_[i].count, std::numeric_limits<std::uint32_t>::max() - into.count);
+    } else {
+      voxels_[kept++] = voxels_[i];
+    }
+  }
+  voxels_.resize(kept);
+  num_compact_ = kept;
+  compact_at_ = kept + std::max(kCompactAt, kept / 2);
+}
+
+PointCloud CloudAccumulator::finish() {
+  if (!is_started_) start();
+  compact();
+  PointCloud cloud = std::move(cloud_);
+  cloud.points_m.reserve(voxels_.size());
+  for (const Voxel& voxel : voxels_) {
+    if (voxel.count < options_.min_points) continue;
+    Eigen::Vector3d p = (voxel.sum_m / static_cast<float>(voxel.count)).cast<double>();
+    for (int axis = 0; axis < 3; ++axis) p[axis] += options_.voxel_m * voxel.cell[static_cast<std::size_t>(axis)];
+    cloud.points_m.push_back(p.cast<float>());
+  }
+  *this = CloudAccumulator(options_);
+  return cloud;
+}
+
+}  // namespace camloc::map_tool

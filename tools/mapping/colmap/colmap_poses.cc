@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/mapping/colmap/colmap_poses.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "core/geometry/depth_registration.h"
+#include "core/io/image_file.h"
+#include "core/io/text.h"
+
+namespace camloc::map_tool {
+namespace {
+
+constexpr std::size_t kMaxScaleImages = 60;
+
+std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+Status check_image_sizes(const ColmapModel& model, const Intrinsics& color) {
+  for (const ColmapCamera& camera : model.cameras) {
+    if (camera.width == color.width && camera.height == color.height) continue;
+    return {ErrorCode::kInvalid, "camera " + std::to_string(camera.id) + " of the model takes images of " + std::to_string(camera.width) + "x" +
+                                     std::to_string(camera.height) + ", the camera file says " + std::to_string(color.width) + "x" +
+                                     std::to_string(color.height) + "; make the model from the recording's own images"};
+  }
+  return Status::ok();
+}
+
+void append_pairs(const ColmapModel& model, std::uint32_t index, const Intrinsics& size, const DepthLookup& lookup,
+                  ImageView<std::uint16_t> depth, std::vector<DepthPair>* pairs) {
+  const ColmapImage& image = model.images[index];
+  for (const ColmapObservation& seen : image.observations) {
+    if (!(seen.u >= 0 && seen.v >= 0 && seen.u <= size.width && seen.v <= size.height)) continue;
+    const double model_depth = (image.T_camera_world * model.points[seen.point].position).z();
+    if (!(model_depth > 0)) continue;
+    const float measured_m = lookup.depth_at(depth, static_cast<float>(seen.u - kColmapPixelShift), static_cast<float>(seen.v - kColmapPixelShift));
+    if (measured_m > 0) pairs->push_back({index, model_depth, static_cast<double>(measured_m)});
+  }
+}
+
+/// Depth pairs of images that are spread evenly over the recording.
+Result<std::vector<DepthPair>> measure_depths(const ColmapModel& model, const std::vector<std::size_t>& frame_of_image,
+                                              const Sequence& sequence, const RgbdCamera& camera) {
+  std::map<std::size_t, std::uint32_t> image_of_frame;  // those that say something about scale, in the recording's order
+  for (std::uint32_t i = 0; i < model.images.size(); ++i) {
+    const bool has_depth = !sequence.frames[frame_of_image[i]].depth_path.empty();
+    if (has_depth && !model.images[i].observations.empty()) image_of_frame.emplace(frame_of_image[i], i);
+  }
+  std::vector<std::uint32_t> images;
+  for (const auto& [frame, image] : image_of_frame) images.push_back(image);
+  const std::size_t count = std::min(kMaxScaleImages, images.size());
+  const DepthLookup lookup(camera);
+  ImageReader reader;
+  Image<std::uint16_t> depth;
+  std::vector<DepthPair> pairs;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t image = images[i * images.size() / count];
+    const std::string& path = sequence.frames[frame_of_image[image]].depth_path;
+    if (!reader.read_depth(path, &depth).is_ok()) continue;  // the build will count it as broken
+    if (depth.width != camera.depth.width || depth.height != camera.depth.height) {
+      return {ErrorCode::kInvalid, path + ": is " + std::to_string(depth.width) + "x" + std::to_string(depth.height) + ", the camera file says " +
+                                       std::to_string(camera.depth.width) + "x" + std::to_string(camera.depth.height)};
+    }
+    append_pairs(model, image, camera.color, lookup, depth.view(), &pairs);
+  }
+  return pairs;
+}
+
+}  // namespace
+
+Result<std::vector<std::size_t>> match_image_names(const ColmapModel& model, const Sequence& sequence) {
+  std::map<std::string, std::vector<std::size_t>> frames_of_name;
+  for (std::size_t i = 0; i < sequence.frames.size(); ++i) frames_of_name[file_name(sequence.frames[i].color_path)].push_back(i);
+  std::vector<std::size_t> frame_of_image;
+  std::map<std::size_t, std::string> image_of_frame;
+  for (const ColmapImage& image : model.images) {
+    const auto frames = frames_of_name.find(file_name(image.name));
+    if (frames == frames_of_name.end()) {
+      return {ErrorCode::kInvalid, "image " + in_quotes(image.name) + " of the model is no colour image of the recording (its first is " +
+                                       in_quotes(file_name(sequence.frames.front().color_path)) + "); names must be the same but for folders"};
+    }
+    if (frames->second.size() > 1) {
+      return {ErrorCode::kInvalid, "image " + in_quotes(image.name) + " of the model fits several frames of the recording; file names must differ"};
+    }
+    const auto [other, is_new] = image_of_frame.emplace(frames->second.front(), image.name);
+    if (!is_new) {
+      return {ErrorCode::kInvalid, "images " + in_quotes(other->second) + " and " + in_quotes(image.name) + " of the model are the same frame of the recording"};
+    }
+    frame_of_image.push_back(frames->second.front());
+  }
+  return frame_of_image;
+}
+
+Result<ColmapPoses> read_colmap_poses(const std::string& folder, const Sequence& sequence, const RgbdCamera& camera) {
+  const auto model = read_colmap_model(folder);
+  if (!model) return model.status();
+  if (const Status sizes = check_image_sizes(*model, camera.color); !sizes.is_ok()) return sizes.with_context(folder);
+  const auto frame_of_image = match_image_names(*model, sequence);
+  if (!frame_of_image) return frame_of_image.status().with_context(folder);
+  const auto pairs = measure_depths(*model, *frame_of_image, sequence, camera);
+  if (!pairs) return pairs.status();
+  const auto scale = estimate_model_scale(*pairs);
+  if (!scale) return scale.status().with_context(folder);
+  ColmapPoses poses{std::vector<std::optional<Rigid3>>(sequence.frames.size()), *scale};
+  for (std::size_t i = 0; i < model->images.size(); ++i) {
+    Rigid3 T_map_camera = model->images[i].T_camera_world.inverse();
+    T_map_camera.translation *= scale->metres_per_unit;
+    poses.T_map_camera[(*frame_of_image)[i]] = T_map_camera;
+  }
+  return poses;
+}
+
+}  // namespace camloc::map_tool

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// How well a map agrees with a cloud of the same place: lays the landmarks onto the cloud, measures distances both ways, checks
+// the scale, and says what to be careful about.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/geometry/rigid3.h"
+#include "core/map/map_view.h"
+#include "tools/mapping/cloud/cloud_distance.h"
+#include "tools/mapping/cloud/cloud_registration.h"
+#include "tools/mapping/cloud/point_cloud.h"
+#include "tools/mapping/site/point_pairs.h"
+
+namespace camloc::map_tool {
+
+enum class AlignStart { kAuto, kPoints, kTrajectory, kDatum, kNone, kSearch };
+
+struct EvaluationOptions {
+  AlignStart start = AlignStart::kAuto;  ///< kAuto: the first of points, trajectory, datum that is there, else kSearch
+  bool has_icp = true;
+  double trim = 0.9;
+  double max_distance_m = 0.5;
+  std::uint32_t min_observations = 2;
+  DistanceOptions distance;  ///< its max_distance_m is not used
+};
+
+/// The same camera at the same moment, in the map and in the frame of the cloud.
+struct PosePair {
+  Rigid3 T_map_camera, T_reference_camera;
+};
+
+struct EvaluationInput {
+  const MapView* map = nullptr;
+  const PointCloud* cloud = nullptr;
+  std::vector<ControlPair> points;  ///< may be empty
+  std::vector<PosePair> poses;      ///< may be empty
+};
+
+/// How sure a search is: mean distances of the landmarks to the cloud, none counting more than max_distance_m, for the start that
+/// was chosen and for the best of the others.
+struct SearchOutcome {
+  double score_m = 0, rival_score_m = 0;
+  bool is_identity = false;  ///< the map's own frame taken as the cloud's
+  std::size_t num_starts = 0;
+};
+
+struct PointResidual {
+  std::string name;
+  double sigma_m = 0;
+  Eigen::Vector3d aligned_m, final_m;  ///< map minus cloud, cloud's axes, aligned by the points, and at the end
+};
+
+struct Evaluation {
+  std::uint64_t num_landmarks = 0, num_used = 0, num_keyframes = 0;  ///< num_used: with enough observations
+  AlignStart start = AlignStart::kNone;                              ///< the one that was used
+  std::optional<SearchOutcome> search;                               ///< of kSearch
+  Rigid3 T_cloud_map_start, T_cloud_map;                             ///< absolute: with the cloud's origin
+  std::optional<Registration> registration;                          ///< nothing when there was no ICP
+  double moved_m = 0, moved_rad = 0;                                 ///< by ICP: the middle of the landmarks, and the rotation
+  std::optional<double> scale, sigma_scale;                          ///< of a similarity by ICP: 1 expected
+  std::optional<double> points_scale, poses_scale;                   ///< by Umeyama over control points, over camera positions
+  /// Twice what residuals of that size do to a scale over points that lie so far apart, at least 0.01.
+  double points_scale_tolerance = 0.01, poses_scale_tolerance = 0.01;
+  std::vector<PointResidual> residuals;
+  double max_distance_m = 0.5;  ///< farther from the cloud is outside of it
+  CloudDistances distances;
+  std::vector<std::string> warnings;
+  std::vector<Eigen::Vector3d> landmarks_m, keyframes_m;  ///< for pictures; relative to the cloud's origin, aligned
+  std::vector<Rigid3> T_cloud_keyframe;
+};
+
+/// `say` names the stage that begins and returns false to stop. Errors: kInvalid when the map has no landmarks with enough
+/// observations, a start was asked for that the input does not give, the cloud seems to be in millimetres; kNotFound
+/// when map and cloud do not overlap; kIo when stopped.
+[[nodiscard]] Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOptions& options,
+                                              const std::function<bool(const std::string&)>& say = {});
+
+/// Name of a start, as in the report.
+[[nodiscard]] const char* describe(AlignStart start);
+
+}  // namespace camloc::map_tool

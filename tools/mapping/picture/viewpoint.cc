@@ -1,0 +1,150 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Viewpoints from which a set of points fills a picture; the drawing itself is in point_raster.cc.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "tools/mapping/picture/point_raster.h"
+
+namespace camloc::map_tool {
+namespace {
+
+constexpr std::size_t kMaxSamples = 20000;  // enough for percentiles, and a cloud of millions costs nothing
+constexpr double kMinExtentM = 0.1;
+
+struct Range {
+  double low = 0, high = 0;
+  [[nodiscard]] double extent() const { return std::max(kMinExtentM, high - low); }
+  [[nodiscard]] double middle() const { return 0.5 * (low + high); }
+};
+
+std::vector<Eigen::Vector3d> samples_of(std::span<const Eigen::Vector3d> points) {
+  std::vector<Eigen::Vector3d> samples;
+  const std::size_t step = points.size() / kMaxSamples + 1;
+  for (std::size_t i = 0; i < points.size(); i += step)
+    if (points[i].allFinite()) samples.push_back(points[i]);
+  return samples;
+}
+
+Range percentiles(std::vector<double>* values) {
+  if (values->empty()) return {-0.5, 0.5};
+  const auto at = [&](std::size_t rank) {
+    std::nth_element(values->begin(), values->begin() + static_cast<std::ptrdiff_t>(rank), values->end());
+    return (*values)[rank];
+  };
+  const std::size_t low = values->size() / 100;
+  return {at(low), at(values->size() - 1 - low)};
+}
+
+Range range_along(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& axis) {
+  std::vector<double> values;
+  values.reserve(points.size());
+  for (const Eigen::Vector3d& p : points) values.push_back(axis.dot(p));
+  return percentiles(&values);
+}
+
+/// How much the points crowd at few places along `axis`: walls across it do that.
+double concentration(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& axis, const Range& range, double bin_m) {
+  std::vector<double> bins(static_cast<std::size_t>(range.extent() / bin_m) + 1);
+  for (const Eigen::Vector3d& p : points) {
+    const double bin = (axis.dot(p) - range.low) / bin_m;
+    if (bin >= 0 && bin < static_cast<double>(bins.size())) ++bins[static_cast<std::size_t>(bin)];
+  }
+  double sum = 0;
+  for (const double count : bins) sum += count * count;
+  return sum;
+}
+
+/// The direction across `up` in which walls run, of the two the one in which the points reach farther.
+Eigen::Vector3d long_side(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up) {
+  // Start from the world's own axis that lies flattest, so that a map with straight walls keeps its axes.
+  Eigen::Index flattest = 0;
+  up.cwiseAbs().minCoeff(&flattest);
+  const Eigen::Vector3d first = (Eigen::Vector3d::Unit(flattest) - up * up[flattest]).normalized();
+  const Eigen::Vector3d second = up.cross(first);
+  const double bin_m = std::max(range_along(points, first).extent(), range_along(points, second).extent()) / 200;
+  Eigen::Vector3d best = first;
+  double best_score = -1;
+  for (int degrees = 0; degrees < 90; ++degrees) {
+    const double angle = degrees * std::numbers::pi / 180;
+    const Eigen::Vector3d a = std::cos(angle) * first + std::sin(angle) * second, b = up.cross(a);
+    const Range along_a = range_along(points, a), along_b = range_along(points, b);
+    const double score = concentration(points, a, along_a, bin_m) + concentration(points, b, along_b, bin_m);
+    if (score <= 1.01 * best_score) continue;  // a turn must be worth it
+    best_score = score;
+    best = along_a.extent() >= along_b.extent() ? a : b;
+  }
+  Eigen::Index main = 0;
+  best.cwiseAbs().maxCoeff(&main);
+  return best[main] < 0 ? Eigen::Vector3d(-best) : best;
+}
+
+/// The view with the given axes (rows: right, down, away) in which the points fill the picture.
+Viewpoint fit_parallel(const std::vector<Eigen::Vector3d>& points, const Eigen::Matrix3d& axes, int width, int height,
+                       int margin_px) {
+  const Range u = range_along(points, axes.row(0)), v = range_along(points, axes.row(1));
+  Viewpoint view;
+  view.T_view_world.rotation = Eigen::Quaterniond(axes).normalized();
+  view.px_per_m = std::min(std::max(1, width - 2 * margin_px) / u.extent(), std::max(1, height - 2 * margin_px) / v.extent());
+  view.center_u = 0.5 * (width - 1) - view.px_per_m * u.middle();
+  view.center_v = 0.5 * (height - 1) - view.px_per_m * v.middle();
+  return view;
+}
+
+Eigen::Matrix3d axes_of(const Eigen::Vector3d& right, const Eigen::Vector3d& away) {
+  Eigen::Matrix3d axes;
+  axes << right.transpose(), away.cross(right).transpose(), away.transpose();
+  return axes;
+}
+
+}  // namespace
+
+Viewpoint fit_top_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width, int height, int margin_px) {
+  const std::vector<Eigen::Vector3d> samples = samples_of(points);
+  const Eigen::Vector3d unit_up = up.normalized();
+  return fit_parallel(samples, axes_of(long_side(samples, unit_up), -unit_up), width, height, margin_px);
+}
+
+Viewpoint fit_side_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width, int height,
+                        int margin_px) {
+  const std::vector<Eigen::Vector3d> samples = samples_of(points);
+  const Eigen::Vector3d unit_up = up.normalized();
+  const Eigen::Vector3d right = long_side(samples, unit_up);
+  return fit_parallel(samples, axes_of(right, unit_up.cross(right)), width, height, margin_px);
+}
+
+Viewpoint fit_perspective_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width, int height,
+                               int margin_px) {
+  constexpr double kTilt = 0.7, kTurn = 0.5, kDistances = 1.8;  // radians, radians, radii of the scene
+  const std::vector<Eigen::Vector3d> samples = samples_of(points);
+  const Eigen::Vector3d unit_up = up.normalized(), right = long_side(samples, unit_up), ahead = unit_up.cross(right);
+  const Eigen::Vector3d heading = std::cos(kTurn) * ahead + std::sin(kTurn) * right;
+  const Eigen::Vector3d away = std::cos(kTilt) * heading - std::sin(kTilt) * unit_up;
+  const Eigen::Matrix3d axes = axes_of(away.cross(unit_up).normalized(), away);
+  const Range x = range_along(samples, axes.row(0)), y = range_along(samples, axes.row(1)), z = range_along(samples, axes.row(2));
+  const double radius_m = 0.5 * std::sqrt(x.extent() * x.extent() + y.extent() * y.extent() + z.extent() * z.extent());
+  Viewpoint view;
+  view.is_perspective = true;
+  view.T_view_world.rotation = Eigen::Quaterniond(axes).normalized();
+  view.T_view_world.translation = -Eigen::Vector3d(x.middle(), y.middle(), z.middle() - kDistances * radius_m);
+  std::vector<double> us, vs;
+  for (const Eigen::Vector3d& p : samples) {
+    const Eigen::Vector3d p_view = view.T_view_world * p;
+    if (p_view.z() < 0.1 * radius_m) continue;
+    us.push_back(p_view.x() / p_view.z());
+    vs.push_back(p_view.y() / p_view.z());
+  }
+  const Range u = percentiles(&us), v = percentiles(&vs);
+  const auto fill = [&](int pixels, const Range& range) {
+    return std::max(1, pixels - 2 * margin_px) / std::max(0.01, range.high - range.low);
+  };
+  view.px_per_m = std::min(fill(width, u), fill(height, v));
+  view.center_u = 0.5 * (width - 1) - view.px_per_m * u.middle();
+  view.center_v = 0.5 * (height - 1) - view.px_per_m * v.middle();
+  return view;
+}
+
+}  // namespace camloc::map_tool

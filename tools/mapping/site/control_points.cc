@@ -1,0 +1,268 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The two text files: rows, columns, and what is wrong with them.
+#include "tools/mapping/site/control_points.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "core/io/file_bytes.h"
+#include "core/io/text.h"
+
+namespace camloc::map_tool {
+namespace {
+
+constexpr double kMaxCoordinateM = 1e8;
+constexpr double kMaxSigma = 100;
+constexpr std::size_t kMaxNameBytes = 63;
+constexpr std::size_t kMaxLines = 10'000;
+constexpr std::size_t kMaxFileBytes = std::size_t{16} << 20;
+
+using Row = std::vector<std::string_view>;
+
+std::string_view unquoted(std::string_view field) {
+  field = trimmed(field);
+  const bool is_quoted = field.size() >= 2 && field.front() == field.back() && (field.front() == '"' || field.front() == '\'');
+  return is_quoted ? trimmed(field.substr(1, field.size() - 2)) : field;
+}
+
+/// A '#' inside of a word is part of a name.
+std::string_view without_comment(std::string_view line) {
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    if (line[i] == '#' && (line[i - 1] == ' ' || line[i - 1] == '\t')) return trimmed(line.substr(0, i));
+  }
+  return line;
+}
+
+/// The most particular separator in the line; all of them where that leaves fewer than `min_fields`.
+Row split_row(std::string_view line, std::size_t min_fields) {
+  line = without_comment(line);
+  Row row;
+  for (const char separator : {';', '\t', ','}) {
+    if (line.find(separator) == std::string_view::npos) continue;
+    for (const std::string_view field : split_fields(line, std::string_view(&separator, 1))) {
+      if (!unquoted(field).empty()) row.push_back(unquoted(field));
+    }
+    if (row.size() >= min_fields) return row;
+    row.clear();
+    break;
+  }
+  for (const std::string_view field : split_fields(line, " \t,;")) row.push_back(unquoted(field));
+  return row;
+}
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return lower;
+}
+
+/// One line of a file: every reader names file, line and field.
+class RowReader {
+ public:
+  RowReader(const std::string& file_name, int line, const Row& row) : file_name_(file_name), line_(line), row_(row) {}
+
+  [[nodiscard]] Status error(const std::string& what) const { return line_error(file_name_, line_, what); }
+
+  Result<double> number(std::size_t field, double low, double high, const std::string& what) const {
+    const std::optional<double> value = parse_double(row_[field]);
+    if (!value || !std::isfinite(*value)) return error(what + " " + in_quotes(row_[field]) + " is not a number (decimal point, no unit)");
+    if (*value < low || *value > high) return error(what + " " + in_quotes(row_[field]) + " is out of range");
+    return *value;
+  }
+
+  /// Fit for tables and messages.
+  [[nodiscard]] Status check_name(std::string_view name) const {
+    if (name.empty()) return error("no name");
+    const bool is_printable = std::none_of(name.begin(), name.end(), [](char c) { return (c >= 0 && c < ' ') || c == 127; });
+    if (!is_printable || name.size() > kMaxNameBytes) return error("name " + in_quotes(name) + " is too long or has control characters");
+    return Status::ok();
+  }
+
+  /// Three numbers from `field` on.
+  Result<Eigen::Vector3d> position(const std::array<std::size_t, 3>& fields) const {
+    constexpr std::array<const char*, 3> kNames = {"x", "y", "z"};
+    Eigen::Vector3d position;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Result<double> value = number(fields[axis], -kMaxCoordinateM, kMaxCoordinateM, kNames[axis]);
+      if (!value) return value.status();
+      position[static_cast<Eigen::Index>(axis)] = *value;
+    }
+    return position;
+  }
+
+  /// The field when it is there, else `fallback`.
+  Result<double> sigma(std::size_t field, double fallback) const {
+    if (field >= row_.size()) return fallback;
+    const Result<double> value = number(field, 0, kMaxSigma, "sigma");
+    if (!value) return value.status();
+    if (*value < 1e-6) return error("sigma must be positive");
+    return *value;
+  }
+
+  template <typename T>
+  Result<T> index(std::size_t field, const std::string& what) const {
+    const std::optional<std::int64_t> value = parse_int(row_[field]);
+    if (!value || *value < 0 || *value > std::numeric_limits<std::int32_t>::max()) {
+      return error(what + " " + in_quotes(row_[field]) + " is not a number from 0 on");
+    }
+    return static_cast<T>(*value);
+  }
+
+ private:
+  const std::string& file_name_;
+  int line_;
+  const Row& row_;
+};
+
+/// Which field of a row is what.
+struct Columns {
+  std::size_t name = 0;
+  std::array<std::size_t, 3> position = {1, 2, 3};
+  std::size_t sigma = 4;
+};
+
+/// Index of a column title in the order of Columns: 0 name, 1..3 x y z, 4 sigma; nullopt for any other word.
+std::optional<std::size_t> column_of(std::string_view title) {
+  static const std::map<std::string, std::size_t, std::less<>> kTitles = {
+      {"name", 0},   {"id", 0},       {"point", 0}, {"point_id", 0}, {"nr", 0},  {"no", 0},      {"x", 1},     {"e", 1},
+      {"east", 1},   {"easting", 1},  {"y", 2},     {"n", 2},        {"north", 2}, {"northing", 2}, {"z", 3},  {"h", 3},
+      {"height", 3}, {"elevation", 3}, {"up", 3},   {"u", 3},        {"sigma", 4}, {"sigma_m", 4}};
+  const auto found = kTitles.find(lower_case(title));
+  return found == kTitles.end() ? std::nullopt : std::optional(found->second);
+}
+
+/// The columns that a line of titles names; nullopt where the line is no such line.
+std::optional<Columns> columns_of_titles(const Row& row) {
+  std::array<std::optional<std::size_t>, 5> field_of{};
+  for (std::size_t field = 0; field < row.size(); ++field) {
+    const std::optional<std::size_t> column = column_of(row[field]);
+    if (column && !field_of[*column]) field_of[*column] = field;
+  }
+  for (std::size_t column = 0; column < 4; ++column) {
+    if (!field_of[column]) return std::nullopt;
+  }
+  return Columns{*field_of[0], {*field_of[1], *field_of[2], *field_of[3]}, field_of[4].value_or(row.size())};
+}
+
+Result<ControlPoint> parse_point(const RowReader& reader, const Row& row, const Columns& columns, int line) {
+  const std::size_t last = std::max({columns.name, columns.position[0], columns.position[1], columns.position[2]});
+  if (row.size() <= last) {
+    return reader.error(std::to_string(row.size()) + (row.size() == 1 ? " field" : " fields") + ", expected 'name x y z [sigma_m]'");
+  }
+  const Result<Eigen::Vector3d> p_wcs = reader.position(columns.position);
+  if (!p_wcs) return p_wcs.status();
+  const Result<double> sigma_m = reader.sigma(columns.sigma, kDefaultPointSigmaM);
+  if (!sigma_m) return sigma_m.status();
+  if (const Status status = reader.check_name(row[columns.name]); !status) return status;
+  return ControlPoint{std::string(row[columns.name]), *p_wcs, *sigma_m, line};
+}
+
+Result<ControlObservation> parse_observation(const RowReader& reader, const Row& row, int line) {
+  ControlObservation observation;
+  observation.name = row[0];
+  observation.line = line;
+  const std::string kind = row.size() > 1 ? lower_case(row[1]) : "";
+  const auto expect = [&](std::size_t num_fields, const char* form) {
+    if (row.size() == num_fields || row.size() == num_fields + 1) return Status::ok();
+    return reader.error(std::to_string(row.size()) + " fields, expected '" + form + "'");
+  };
+  Result<double> sigma = 0.0;
+  if (kind == "map") {
+    if (const Status status = expect(5, "name map x y z [sigma_m]"); !status) return status;
+    const Result<Eigen::Vector3d> p_map = reader.position({2, 3, 4});
+    if (!p_map) return p_map.status();
+    observation.p_map = *p_map;
+    sigma = reader.sigma(5, kDefaultPickedSigmaM);
+  } else if (kind == "landmark") {
+    observation.kind = ObservationKind::kLandmark;
+    if (const Status status = expect(3, "name landmark INDEX [sigma_m]"); !status) return status;
+    const Result<std::uint32_t> index = reader.index<std::uint32_t>(2, "landmark");
+    if (!index) return index.status();
+    observation.landmark = *index;
+    sigma = reader.sigma(3, 0);
+  } else if (kind == "pixel") {
+    observation.kind = ObservationKind::kPixel;
+    if (const Status status = expect(5, "name pixel FRAME u v [sigma_px]"); !status) return status;
+    const Result<std::uint64_t> frame = reader.index<std::uint64_t>(2, "frame");
+    if (!frame) return frame.status();
+    const Result<double> u = reader.number(3, -0.5, 65535, "u"), v = reader.number(4, -0.5, 65535, "v");
+    if (!u || !v) return !u ? u.status() : v.status();
+    observation.frame = *frame;
+    observation.u = *u;
+    observation.v = *v;
+    sigma = reader.sigma(5, kDefaultPixelSigmaPx);
+  } else {
+    return reader.error(in_quotes(row.size() > 1 ? row[1] : "") + " is not 'map', 'landmark' or 'pixel'");
+  }
+  if (!sigma) return sigma.status();
+  observation.sigma = *sigma;
+  return observation;
+}
+
+Status check_number_of_lines(std::size_t num_lines, const std::string& file_name, const char* what) {
+  if (num_lines == 0) return {ErrorCode::kInvalid, file_name + ": no " + what + " in it"};
+  if (num_lines <= kMaxLines) return Status::ok();
+  return {ErrorCode::kInvalid, file_name + ": " + std::to_string(num_lines) + " lines; is it really a file of control points?"};
+}
+
+}  // namespace
+
+Result<std::vector<ControlPoint>> parse_control_points(std::string_view text, const std::string& file_name) {
+  const std::vector<TextLine> lines = content_lines(text);
+  if (const Status status = check_number_of_lines(lines.size(), file_name, "control point"); !status) return status;
+  std::vector<ControlPoint> points;
+  std::map<std::string, int> line_of_name;
+  Columns columns;
+  for (const TextLine& line : lines) {
+    const Row row = split_row(line.text, 4);
+    if (&line == &lines.front()) {
+      if (const std::optional<Columns> titles = columns_of_titles(row)) {
+        columns = *titles;
+        continue;
+      }
+    }
+    const Result<ControlPoint> point = parse_point(RowReader(file_name, line.number, row), row, columns, line.number);
+    if (!point) return point.status();
+    const auto [known, is_new] = line_of_name.emplace(point->name, line.number);
+    if (!is_new) {
+      return line_error(file_name, line.number, "point " + in_quotes(point->name) + " is already in line " + std::to_string(known->second) +
+                                                    "; give each point a name of its own");
+    }
+    points.push_back(*point);
+  }
+  if (points.empty()) return Status(ErrorCode::kInvalid, file_name + ": no control point in it");
+  return points;
+}
+
+Result<std::vector<ControlObservation>> parse_control_observations(std::string_view text, const std::string& file_name) {
+  const std::vector<TextLine> lines = content_lines(text);
+  if (const Status status = check_number_of_lines(lines.size(), file_name, "observation"); !status) return status;
+  std::vector<ControlObservation> observations;
+  for (const TextLine& line : lines) {
+    const Row row = split_row(line.text, 3);
+    const RowReader reader(file_name, line.number, row);
+    if (const Status status = reader.check_name(row.empty() ? std::string_view() : row[0]); !status) return status;
+    const Result<ControlObservation> observation = parse_observation(reader, row, line.number);
+    if (!observation) return observation.status();
+    observations.push_back(*observation);
+  }
+  return observations;
+}
+
+Result<std::vector<ControlPoint>> read_control_points(const std::string& path) {
+  const Result<std::string> text = read_file_text(path, kMaxFileBytes);
+  return text ? parse_control_points(*text, path) : Result<std::vector<ControlPoint>>(text.status());
+}
+
+Result<std::vector<ControlObservation>> read_control_observations(const std::string& path) {
+  const Result<std::string> text = read_file_text(path, kMaxFileBytes);
+  return text ? parse_control_observations(*text, path) : Result<std::vector<ControlObservation>>(text.status());
+}
+
+}  // namespace camloc::map_tool

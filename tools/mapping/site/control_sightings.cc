@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// From observations to points of the map. See control_points.h.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <optional>
+
+#include "tools/mapping/site/control_points.h"
+
+namespace camloc::map_tool {
+namespace {
+
+/// Squared distance from the mean over variance and degree of freedom, above which sightings contradict each other.
+constexpr double kMaxScatterRatio = 16;
+
+Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
+Result<PointSighting> resolve(const ControlObservation& observation, const RgbdCamera& camera, const ControlSources& sources) {
+  if (observation.kind == ObservationKind::kMapPosition) return PointSighting{{}, observation.p_map, observation.sigma, {}};
+  if (observation.kind == ObservationKind::kLandmark) {
+    if (!sources.landmark) return {ErrorCode::kUnavailable, "there is no map to look landmarks up in"};
+    Result<PointSighting> sighting = sources.landmark(observation.landmark);
+    if (sighting && observation.sigma > 0) sighting->sigma_m = observation.sigma;
+    return sighting;
+  }
+  if (!sources.T_map_camera || !sources.pixel) return {ErrorCode::kUnavailable, "there is no recording to look pixels up in"};
+  const Result<PoseWithCovariance> T_map_camera = sources.T_map_camera(observation.frame);
+  if (!T_map_camera) return T_map_camera.status();
+  const Result<PixelMeasurement> measurement = sources.pixel(observation);
+  if (!measurement) return measurement.status();
+  return to_map(observation, *measurement, camera, *T_map_camera);
+}
+
+ObservedPoint average(const std::string& name, const std::vector<const PointSighting*>& sightings) {
+  ObservedPoint point;
+  point.name = name;
+  point.num_sightings = sightings.size();
+  double weight = 0;
+  for (const PointSighting* sighting : sightings) {
+    const double w = 1 / (sighting->sigma_m * sighting->sigma_m);
+    weight += w;
+    point.p_map += w * sighting->p_map;
+  }
+  point.p_map /= weight;
+  point.sigma_m = 1 / std::sqrt(weight);
+  if (sightings.size() < 2) return point;
+
+  double sum_squared = 0, sum_normalized = 0, farthest = 0;
+  const PointSighting* farthest_sighting = nullptr;
+  for (const PointSighting* sighting : sightings) {
+    const double squared = (sighting->p_map - point.p_map).squaredNorm();
+    sum_squared += squared;
+    sum_normalized += squared / (sighting->sigma_m * sighting->sigma_m);
+    if (squared > farthest) {
+      farthest = squared;
+      farthest_sighting = sighting;
+    }
+  }
+  const auto count = static_cast<double>(sightings.size());
+  const double freedom = 3 * (count - 1);
+  point.scatter_m = std::sqrt(sum_squared / count);
+  // Per axis, of the mean.
+  point.sigma_m = std::max(point.sigma_m, std::sqrt(sum_squared / freedom / count));
+  if (farthest_sighting != nullptr && sum_normalized > kMaxScatterRatio * freedom) point.farthest = farthest_sighting->source;
+  return point;
+}
+
+}  // namespace
+
+std::string describe(const ControlObservation& observation) {
+  char text[96];
+  switch (observation.kind) {
+    case ObservationKind::kMapPosition: return "map position of line " + std::to_string(observation.line);
+    case ObservationKind::kLandmark: return "landmark " + std::to_string(observation.landmark);
+    case ObservationKind::kPixel: break;
+  }
+  std::snprintf(text, sizeof text, "pixel (%.1f, %.1f) of frame %llu", observation.u, observation.v,
+                static_cast<unsigned long long>(observation.frame));
+  return text;
+}
+
+Result<PixelMeasurement> measure_pixel(const ControlObservation& pixel, const RgbdCamera& camera, const DepthLookup& lookup,
+                                       ImageView<std::uint16_t> depth) {
+  if (pixel.u > camera.color.width - 0.5 || pixel.v > camera.color.height - 0.5) {
+    return {ErrorCode::kInvalid, "outside of the image of " + std::to_string(camera.color.width) + "x" + std::to_string(camera.color.height)};
+  }
+  if (depth.empty()) return {ErrorCode::kNotFound, "the frame has no depth image"};
+  if (depth.width != camera.depth.width || depth.height != camera.depth.height) {
+    return {ErrorCode::kInvalid, "the depth image has another size than the camera file says"};
+  }
+  const float depth_m = lookup.depth_at(depth, static_cast<float>(pixel.u), static_cast<float>(pixel.v));
+  if (!(depth_m > 0)) return {ErrorCode::kNotFound, "no depth there, or the edge of something; choose a point on a surface"};
+  const Eigen::Vector2d normalized = camera.color.undistort({pixel.u, pixel.v});
+  return PixelMeasurement{normalized, static_cast<double>(depth_m), pixel.sigma};
+}
+
+void measure_pixels(const std::vector<ControlObservation>& observations, const RgbdCamera& camera, const DepthLookup& lookup,
+                    const Frame& frame, PixelMeasurements* measurements) {
+  for (const ControlObservation& observation : observations) {
+    if (observation.kind != ObservationKind::kPixel || observation.frame != frame.sequence) continue;
+    measurements->insert_or_assign(observation.line, measure_pixel(observation, camera, lookup, frame.depth));
+  }
+}
+
+PointSighting to_map(const ControlObservation& pixel, const PixelMeasurement& measurement, const RgbdCamera& camera,
+                     const PoseWithCovariance& T_map_camera) {
+  const double z = measurement.depth_m;
+  const Eigen::Vector3d ray(measurement.normalized.x(), measurement.normalized.y(), 1);
+  const Eigen::Vector3d turned = T_map_camera.pose.rotation * (z * ray);
+  // A pose error (dp, r) moves the point by dp + r x (R p).
+  Eigen::Matrix<double, 3, 6> jacobian;
+  jacobian << Eigen::Matrix3d::Identity(), -skew(turned);
+  const Eigen::Matrix3d of_pose = jacobian * T_map_camera.covariance * jacobian.transpose();
+  const double across_m = z * measurement.sigma_px / camera.color.mean_focal_px();
+  const double along_m = camera.depth_noise.sigma_m(z) * ray.norm();
+  const double variance = (of_pose.trace() + 2 * across_m * across_m + along_m * along_m) / 3;
+  return {pixel.name, turned + T_map_camera.pose.translation, std::sqrt(variance), describe(pixel)};
+}
+
+ResolvedObservations resolve_observations(const std::vector<ControlObservation>& observations, const RgbdCamera& camera,
+                                          const ControlSources& sources) {
+  ResolvedObservations resolved;
+  for (const ControlObservation& observation : observations) {
+    Result<PointSighting> sighting = resolve(observation, camera, sources);
+    if (!sighting) {
+      resolved.left_out.push_back(observation.name + ", " + describe(observation) + ": " + sighting.status().message());
+      continue;
+    }
+    sighting->name = observation.name;
+    sighting->source = describe(observation);
+    resolved.sightings.push_back(*sighting);
+  }
+  return resolved;
+}
+
+std::vector<ObservedPoint> average_sightings(const std::vector<PointSighting>& sightings) {
+  std::vector<std::string> names;
+  std::map<std::string, std::vector<const PointSighting*>> by_name;
+  for (const PointSighting& sighting : sightings) {
+    std::vector<const PointSighting*>& same = by_name[sighting.name];
+    if (same.empty()) names.push_back(sighting.name);
+    same.push_back(&sighting);
+  }
+  std::vector<ObservedPoint> points;
+  points.reserve(names.size());
+  for (const std::string& name : names) points.push_back(average(name, by_name[name]));
+  return points;
+}
+
+}  // namespace camloc::map_tool

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/mapping/site/point_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/io/file_bytes.h"
+#include "core/io/text.h"
+
+namespace camloc::map_tool {
+namespace {
+
+constexpr std::size_t kMaxFileBytes = std::size_t{16} << 20;
+
+}  // namespace
+
+Result<std::vector<ControlPair>> parse_point_pairs(std::string_view text, const std::string& path) {
+  std::vector<ControlPair> pairs;
+  for (const TextLine& line : content_lines(text)) {
+    const auto fields = split_fields(line.text);
+    if (fields.size() != 7 && fields.size() != 8) {
+      return line_error(path, line.number,
+                        "has " + std::to_string(fields.size()) +
+                            " fields; 'name map_x map_y map_z cloud_x cloud_y cloud_z [sigma]' has 7 or 8");
+    }
+    ControlPair pair;
+    pair.name = std::string(fields[0]);
+    double numbers[7] = {0, 0, 0, 0, 0, 0, pair.sigma_m};
+    for (std::size_t i = 1; i < fields.size(); ++i) {
+      const auto value = parse_double(fields[i]);
+      if (!value || !std::isfinite(*value)) return line_error(path, line.number, in_quotes(fields[i]) + " is no number");
+      numbers[i - 1] = *value;
+    }
+    pair.p_map = {numbers[0], numbers[1], numbers[2]};
+    pair.p_cloud = {numbers[3], numbers[4], numbers[5]};
+    pair.sigma_m = numbers[6];
+    if (!(pair.sigma_m > 0)) return line_error(path, line.number, "sigma must be positive, in metres");
+    const auto same = [&](const ControlPair& other) { return other.name == pair.name; };
+    if (std::any_of(pairs.begin(), pairs.end(), same))
+      return line_error(path, line.number, "point " + in_quotes(pair.name) + " was given before");
+    pairs.push_back(std::move(pair));
+  }
+  if (pairs.size() < 3)
+    return {ErrorCode::kInvalid, path + ": has " + std::to_string(pairs.size()) + " control points; at least 3 are needed"};
+  return pairs;
+}
+
+Result<std::vector<ControlPair>> read_point_pairs(const std::string& path) {
+  const auto text = read_file_text(path, kMaxFileBytes);
+  if (!text.is_ok()) return text.status();
+  return parse_point_pairs(text.value(), path);
+}
+
+}  // namespace camloc::map_tool
