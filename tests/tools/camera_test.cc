@@ -8,7 +8,7 @@
 #include "tests/tools/command_runner.h"
 #include "tests/tools/fake_usb.h"
 #include "tools/camloc/commands.h"
-#include "tools/camloc/usb_devices.h"
+#include "tools/doctor/usb_devices.h"
 
 namespace camloc::tools {
 namespace {

@@ -3,7 +3,7 @@
 #include "tests/tools/command_runner.h"
 #include "tests/tools/fake_daemon.h"
 #include "tools/camloc/commands.h"
-#include "tools/camloc/control_client.h"
+#include "tools/common/control_client.h"
 
 namespace camloc::tools {
 namespace {

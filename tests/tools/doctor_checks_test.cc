@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Every cause that `camloc doctor` knows, present and absent, on machines that the test makes up.
-#include "tools/camloc/doctor_checks.h"
+#include "tools/doctor/doctor_checks.h"
 
 #include <unistd.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc/epipolar_error.h"
+#include "tools/evaluation/epipolar_error.h"
 
 #include <gtest/gtest.h>
 

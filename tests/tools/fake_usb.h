@@ -10,7 +10,7 @@
 #include <string>
 
 #include "tests/tools/command_runner.h"
-#include "tools/camloc/usb_devices.h"
+#include "tools/doctor/usb_devices.h"
 
 namespace camloc::tools {
 

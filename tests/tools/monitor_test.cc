@@ -8,7 +8,7 @@
 
 #include "tests/tools/command_runner.h"
 #include "tools/camloc/commands.h"
-#include "tools/camloc/monitor_view.h"
+#include "tools/monitor/monitor_view.h"
 
 namespace camloc::tools {
 namespace {

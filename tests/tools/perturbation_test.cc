@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What --perturb does to an image, against the formulas written out.
-#include "tools/camloc/perturbation.h"
+#include "tools/evaluation/perturbation.h"
 
 #include <gtest/gtest.h>
 

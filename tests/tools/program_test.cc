@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Running other programs, and `camloc` itself as one.
-#include "tools/camloc/program.h"
+#include "tools/common/program.h"
 
 #include <cstdlib>
 

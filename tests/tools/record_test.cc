@@ -13,7 +13,7 @@
 #include "drivers/sample_source.h"
 #include "tests/tools/command_runner.h"
 #include "tools/camloc/commands.h"
-#include "tools/camloc/recorder.h"
+#include "tools/recording/recorder.h"
 
 namespace camloc::tools {
 namespace {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The picture is written, shows what was drawn, and survives odd input.
-#include "tools/camloc/top_view.h"
+#include "tools/evaluation/top_view.h"
 
 #include "tests/tools/command_runner.h"
 

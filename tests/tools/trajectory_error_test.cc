@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Statistics of errors that were made on purpose.
-#include "tools/camloc/trajectory_error.h"
+#include "tools/evaluation/trajectory_error.h"
 
 #include <gtest/gtest.h>
 

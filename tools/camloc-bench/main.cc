@@ -16,9 +16,9 @@
 #include "drivers/source_url.h"
 #include "tools/camloc-bench/opencv_reference.h"
 #include "tools/camloc/commands.h"
-#include "tools/camloc/sequence_run.h"
-#include "tools/camloc/trajectory_error.h"
 #include "tools/common/command_line.h"
+#include "tools/evaluation/sequence_run.h"
+#include "tools/evaluation/trajectory_error.h"
 
 namespace {
 

@@ -13,10 +13,10 @@
 #include "drivers/openni2/installation.h"
 #include "drivers/v4l2/v4l2_list.h"
 #include "tools/camloc/commands.h"
-#include "tools/camloc/usb_devices.h"
 #include "tools/common/output_path.h"
 #include "tools/common/text_format.h"
 #include "tools/common/trajectory_file.h"
+#include "tools/doctor/usb_devices.h"
 
 namespace camloc::tools {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "tools/camloc/commands.h"
-#include "tools/camloc/control_client.h"
+#include "tools/common/control_client.h"
 
 namespace camloc::tools {
 namespace {

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "tools/camloc/commands.h"
-#include "tools/camloc/doctor_checks.h"
-#include "tools/camloc/program.h"
+#include "tools/common/program.h"
+#include "tools/doctor/doctor_checks.h"
 
 namespace camloc::tools {
 namespace {

@@ -12,12 +12,12 @@
 #include "core/base/order_statistics.h"
 #include "core/io/camera_file.h"
 #include "tools/camloc/commands.h"
-#include "tools/camloc/epipolar_error.h"
-#include "tools/camloc/recorded_poses.h"
 #include "tools/common/frame_reading.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/progress_line.h"
 #include "tools/common/trajectory_file.h"
+#include "tools/evaluation/epipolar_error.h"
+#include "tools/evaluation/recorded_poses.h"
 
 namespace camloc::tools {
 namespace {

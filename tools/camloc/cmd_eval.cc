@@ -11,10 +11,10 @@
 #include "core/io/camera_file.h"
 #include "core/map/map_view.h"
 #include "tools/camloc/commands.h"
-#include "tools/camloc/recorded_poses.h"
-#include "tools/camloc/top_view.h"
-#include "tools/camloc/trajectory_error.h"
 #include "tools/common/output_path.h"
+#include "tools/evaluation/recorded_poses.h"
+#include "tools/evaluation/top_view.h"
+#include "tools/evaluation/trajectory_error.h"
 
 namespace camloc::tools {
 namespace {

@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/camloc/commands.h"
-#include "tools/camloc/sequence_run.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/output_path.h"
 #include "tools/common/progress_line.h"
 #include "tools/common/trajectory_file.h"
+#include "tools/evaluation/sequence_run.h"
 
 namespace camloc::tools {
 namespace {

@@ -12,7 +12,7 @@
 #include "core/geometry/wcs.h"
 #include "core/map/map_view.h"
 #include "tools/camloc/commands.h"
-#include "tools/camloc/sequence_run.h"
+#include "tools/evaluation/sequence_run.h"
 
 namespace camloc::tools {
 namespace {

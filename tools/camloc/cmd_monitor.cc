@@ -13,9 +13,9 @@
 #include <string>
 
 #include "tools/camloc/commands.h"
-#include "tools/camloc/map_sketch.h"
-#include "tools/camloc/monitor_view.h"
-#include "tools/camloc/multicast_route.h"
+#include "tools/doctor/multicast_route.h"
+#include "tools/monitor/map_sketch.h"
+#include "tools/monitor/monitor_view.h"
 
 namespace camloc::tools {
 namespace {

@@ -12,11 +12,11 @@
 #include "core/io/camera_file.h"
 #include "drivers/source_url.h"
 #include "tools/camloc/commands.h"
-#include "tools/camloc/recorder.h"
 #include "tools/common/command_line.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/progress_line.h"
 #include "tools/common/text_format.h"
+#include "tools/recording/recorder.h"
 
 namespace camloc::tools {
 namespace {

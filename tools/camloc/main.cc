@@ -9,8 +9,8 @@
 
 #include "core/map/mapping_guard.h"
 #include "tools/camloc/commands.h"
-#include "tools/camloc/program.h"
 #include "tools/common/command_line.h"
+#include "tools/common/program.h"
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include <fstream>
 #include <map>
 
-#include "tools/camloc/doctor_checks.h"
 #include "tools/common/text_format.h"
+#include "tools/doctor/doctor_checks.h"
 
 namespace camloc::tools {
 namespace {

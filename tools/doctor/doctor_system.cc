@@ -11,8 +11,8 @@
 #include <sstream>
 
 #include "core/features/hamming.h"
-#include "tools/camloc/doctor_checks.h"
 #include "tools/common/text_format.h"
+#include "tools/doctor/doctor_checks.h"
 
 namespace camloc::tools {
 namespace {

@@ -11,9 +11,9 @@
 #include "core/map/map_view.h"
 #include "drivers/frame_source.h"
 #include "drivers/source_url.h"
-#include "tools/camloc/doctor_checks.h"
-#include "tools/camloc/program.h"
+#include "tools/common/program.h"
 #include "tools/common/text_format.h"
+#include "tools/doctor/doctor_checks.h"
 
 namespace camloc::tools {
 namespace {

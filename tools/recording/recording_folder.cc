@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc/recording_folder.h"
+#include "tools/recording/recording_folder.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc/trajectory_error.h"
+#include "tools/evaluation/trajectory_error.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "drivers/openni2/installation.h"
-#include "tools/camloc/control_client.h"
-#include "tools/camloc/multicast_route.h"
-#include "tools/camloc/usb_devices.h"
+#include "tools/common/control_client.h"
+#include "tools/doctor/multicast_route.h"
+#include "tools/doctor/usb_devices.h"
 
 namespace camloc::tools {
 

@@ -16,7 +16,7 @@
 
 #include "core/base/frame.h"
 #include "core/base/result.h"
-#include "tools/camloc/recording_folder.h"
+#include "tools/recording/recording_folder.h"
 
 namespace camloc::tools {
 

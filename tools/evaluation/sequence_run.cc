@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc/sequence_run.h"
+#include "tools/evaluation/sequence_run.h"
 
 #include <chrono>
 

@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc/recorder.h"
+#include "tools/recording/recorder.h"
 
 #include <chrono>
 #include <ctime>
 #include <limits>
 
-#include "tools/camloc/frame_writers.h"
+#include "tools/recording/frame_writers.h"
 
 namespace camloc::tools {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc/multicast_route.h"
+#include "tools/doctor/multicast_route.h"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>

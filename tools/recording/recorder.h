@@ -13,7 +13,7 @@
 
 #include "core/base/result.h"
 #include "drivers/frame_source.h"
-#include "tools/camloc/recording_folder.h"
+#include "tools/recording/recording_folder.h"
 
 namespace camloc::tools {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc/control_client.h"
+#include "tools/common/control_client.h"
 
 #include <poll.h>
 #include <sys/socket.h>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The files are those of the Linux kernel's Documentation/ABI/stable/sysfs-bus-usb.
-#include "tools/camloc/usb_devices.h"
+#include "tools/doctor/usb_devices.h"
 
 #include <algorithm>
 #include <charconv>

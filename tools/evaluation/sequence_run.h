@@ -13,8 +13,8 @@
 #include "core/localize/localizer.h"
 #include "core/map/map_view.h"
 #include "drivers/frame_source.h"
-#include "tools/camloc/perturbation.h"
 #include "tools/common/frame_reading.h"
+#include "tools/evaluation/perturbation.h"
 
 namespace camloc::tools {
 

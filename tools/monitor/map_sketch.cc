@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc/map_sketch.h"
+#include "tools/monitor/map_sketch.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc/top_view.h"
+#include "tools/evaluation/top_view.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc/frame_writers.h"
+#include "tools/recording/frame_writers.h"
 
 #include <cassert>
 #include <numeric>

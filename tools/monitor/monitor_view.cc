@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc/monitor_view.h"
+#include "tools/monitor/monitor_view.h"
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>

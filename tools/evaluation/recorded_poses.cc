@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc/recorded_poses.h"
+#include "tools/evaluation/recorded_poses.h"
 
 #include "core/io/frame_selection.h"
 

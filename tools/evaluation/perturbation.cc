@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc/perturbation.h"
+#include "tools/evaluation/perturbation.h"
 
 #include <algorithm>
 #include <array>
