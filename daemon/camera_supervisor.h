@@ -22,9 +22,9 @@ enum class RecoveryStep : std::uint8_t {
 };
 
 struct SupervisorOptions {
-  std::int64_t stall_ns = 250'000'000;               ///< a streaming camera without a frame for this long has stalled
-  std::int64_t first_frame_ns = 1'500'000'000;       ///< how long a stream may take to its first frame
-  std::int64_t corrupt_ns = 5'000'000'000;           ///< how long nothing but corrupt frames is accepted
+  std::int64_t stall_ns = 250'000'000;          ///< a streaming camera without a frame for this long has stalled
+  std::int64_t first_frame_ns = 1'500'000'000;  ///< how long a stream may take to its first frame
+  std::int64_t corrupt_ns = 5'000'000'000;      ///< how long nothing but corrupt frames is accepted
   std::int64_t longest_patience_ns = 20'000'000'000;
 };
 
@@ -59,9 +59,9 @@ class CameraSupervisor {
   bool is_live_ = false;
   bool is_stalled_ = false;
   RecoveryStep last_step_ = RecoveryStep::kNone;
-  std::int64_t patience_ns_ = 0;      // for the next step, once resets have begun
-  std::int64_t deadline_ns_ = 0;      // of the next frame
-  std::int64_t last_frame_ns_ = 0;    // or the time it was opened, before the first
+  std::int64_t patience_ns_ = 0;    // for the next step, once resets have begun
+  std::int64_t deadline_ns_ = 0;    // of the next frame
+  std::int64_t last_frame_ns_ = 0;  // or the time it was opened, before the first
   std::int64_t last_recovery_ns_ = 0;
 };
 

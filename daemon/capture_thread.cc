@@ -33,8 +33,7 @@ const char* to_string(CapturePhase phase) {
   return "ended";
 }
 
-CaptureThread::CaptureThread(const CaptureOptions& options, OpenSource open_source, int wake_fd)
-    : shared_(std::make_shared<Shared>()) {
+CaptureThread::CaptureThread(const CaptureOptions& options, OpenSource open_source, int wake_fd) : shared_(std::make_shared<Shared>()) {
   shared_->options = options;
   shared_->open_source = std::move(open_source);
   shared_->wake_fd = wake_fd;
@@ -102,7 +101,8 @@ void CaptureThread::Shared::run() {
       was_open = true;
       supervisor.on_opened(monotonic_ns(), (*source)->info().stamp_clock == StampClock::kMonotonic);
       const bool is_stalled = supervisor.is_stalled();
-      set_report(is_stalled ? CapturePhase::kStalled : CapturePhase::kStreaming, &(*source)->info(), is_stalled ? "open again, no frame yet" : "");
+      set_report(is_stalled ? CapturePhase::kStalled : CapturePhase::kStreaming, &(*source)->info(),
+                 is_stalled ? "open again, no frame yet" : "");
       status = stream(**source);
       source.value().reset();  // give the device back before pausing
     }
@@ -179,9 +179,7 @@ Status CaptureThread::Shared::take_step(FrameSource& source, RecoveryStep step) 
       stream_restarts.fetch_add(1, std::memory_order_relaxed);
       set_report(CapturePhase::kStalled, nullptr, overdue_text(silence_ns, "restarting the stream"));
       return source.restart();
-    case RecoveryStep::kReopen:
-      set_report(CapturePhase::kStalled, nullptr, overdue_text(silence_ns, "opening the camera again"));
-      break;
+    case RecoveryStep::kReopen: set_report(CapturePhase::kStalled, nullptr, overdue_text(silence_ns, "opening the camera again")); break;
     case RecoveryStep::kResetDevice:
       device_resets.fetch_add(1, std::memory_order_relaxed);
       set_report(CapturePhase::kStalled, nullptr, overdue_text(silence_ns, "resetting the camera"));

@@ -24,8 +24,8 @@ namespace camloc {
 
 struct CaptureOptions {
   std::string url;
-  bool wait_for_reader = false;                ///< hold a frame back until the last one was taken, instead of dropping
-  std::chrono::milliseconds retry{1000};       ///< pause before the source is opened again
+  bool wait_for_reader = false;                  ///< hold a frame back until the last one was taken, instead of dropping
+  std::chrono::milliseconds retry{1000};         ///< pause before the source is opened again
   std::chrono::milliseconds frame_timeout{100};  ///< given to FrameSource::next() at most; bounds the time to stop
   SupervisorOptions supervisor;
 };
@@ -52,9 +52,9 @@ struct CaptureReport {
 
 /// What the thread has seen and done since it started.
 struct CaptureCounts {
-  std::uint64_t turns = 0;           ///< rounds of its loop, also those that end in a time-out
+  std::uint64_t turns = 0;  ///< rounds of its loop, also those that end in a time-out
   std::uint64_t frames_received = 0, frames_corrupt = 0;
-  std::uint64_t stalls = 0;          ///< times a frame was overdue
+  std::uint64_t stalls = 0;  ///< times a frame was overdue
   std::uint64_t stream_restarts = 0;
   std::uint64_t device_reopens = 0;  ///< opened anew after it had been open
   std::uint64_t device_resets = 0;
@@ -97,8 +97,8 @@ class CaptureThread {
 
     // The thread's own.
     CameraSupervisor supervisor{SupervisorOptions{}};
-    std::int64_t last_frame_ns = 0;     // 0 before the first
-    bool was_away = false;              // the device vanished since then
+    std::int64_t last_frame_ns = 0;  // 0 before the first
+    bool was_away = false;           // the device vanished since then
     std::int64_t health_read_ns = 0;
 
     std::mutex mutex;  // the rest

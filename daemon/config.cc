@@ -52,7 +52,8 @@ const auto& table() {
               "Frame of the published poses. wcs needs a map with a site datum (camloc map georef)."},
       Setting{"control", "socket", &Config::control_socket, std::string("/run/camloc/control.sock"), "", 0, 107, "", false,
               "UNIX socket for 'camloc ctl', mode 0660. Empty: off."},
-      Setting{"log", "level", &Config::log_level, std::string("info"), "", 1, 8, "error|warning|info|debug", true, "What is logged to stderr."},
+      Setting{"log", "level", &Config::log_level, std::string("info"), "", 1, 8, "error|warning|info|debug", true,
+              "What is logged to stderr."},
   };
   return kSettings;
 }
@@ -138,7 +139,8 @@ Result<SettingValue> parse_value(const Setting& setting, const std::string& text
 
 Config::Config() {
   for (const Setting& setting : settings()) {
-    std::visit([&](auto field) { this->*field = std::get<std::remove_reference_t<decltype(this->*field)>>(setting.default_value); }, setting.field);
+    std::visit([&](auto field) { this->*field = std::get<std::remove_reference_t<decltype(this->*field)>>(setting.default_value); },
+               setting.field);
   }
 }
 
@@ -161,7 +163,8 @@ Status assign(const Setting& setting, const SettingValue& value, Config* config)
   if (const std::string* text = std::get_if<std::string>(&value)) {
     if (const Status status = check_text(setting, *text); !status) return status;
   }
-  if (const std::int64_t* number = std::get_if<std::int64_t>(&value); number != nullptr && (*number < setting.min || *number > setting.max)) {
+  if (const std::int64_t* number = std::get_if<std::int64_t>(&value);
+      number != nullptr && (*number < setting.min || *number > setting.max)) {
     return invalid(setting, std::to_string(*number) + " is out of range, " + range_text(setting));
   }
   std::visit([&](auto field) { config->*field = std::get<std::remove_reference_t<decltype(config->*field)>>(value); }, setting.field);

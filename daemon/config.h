@@ -43,10 +43,10 @@ struct Setting {
   const char* key;
   SettingField field;
   SettingValue default_value;
-  const char* unit;          ///< "" where there is none
-  std::int64_t min, max;     ///< of a number; of a text the number of bytes
-  const char* choices;       ///< "a|b|c" for a text with few values, else ""
-  bool is_reloadable;        ///< a reload applies it; otherwise it needs a restart
+  const char* unit;       ///< "" where there is none
+  std::int64_t min, max;  ///< of a number; of a text the number of bytes
+  const char* choices;    ///< "a|b|c" for a text with few values, else ""
+  bool is_reloadable;     ///< a reload applies it; otherwise it needs a restart
   const char* doc;
 
   [[nodiscard]] std::string name() const { return std::string(section) + "." + key; }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // TOML to Config. The only file of the daemon that sees toml++.
+#include <toml++/toml.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -10,8 +12,6 @@
 #include <memory>
 
 #include "daemon/config.h"
-
-#include <toml++/toml.h>
 
 namespace camloc {
 namespace {
@@ -56,7 +56,8 @@ Status parse_section(const std::string& section, const toml::table& table, const
 Result<std::string> read_text(const std::string& path) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "re"), std::fclose);
   const auto failed = [&] {
-    return Status(errno == ENOENT ? ErrorCode::kNotFound : ErrorCode::kIo, "cannot read configuration " + path + ": " + std::strerror(errno));
+    return Status(errno == ENOENT ? ErrorCode::kNotFound : ErrorCode::kIo,
+                  "cannot read configuration " + path + ": " + std::strerror(errno));
   };
   if (file == nullptr) return failed();
   std::string text(kMaxFileBytes + 1, '\0');
@@ -89,9 +90,7 @@ Status merge_file(const std::string& path, Config* config) {
 
 Status parse_config(std::string_view text, const std::string& name, Config* config) {
   const toml::parse_result parsed = toml::parse(text, name);
-  if (!parsed) {
-    return {ErrorCode::kInvalid, at(name, parsed.error().source()) + ": " + std::string(parsed.error().description())};
-  }
+  if (!parsed) { return {ErrorCode::kInvalid, at(name, parsed.error().source()) + ": " + std::string(parsed.error().description())}; }
   const toml::table& root = parsed.table();
   Config result = *config;
   for (const auto& [section, node] : root) {

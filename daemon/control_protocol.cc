@@ -70,8 +70,7 @@ Result<ControlCommand> parse_control_request(std::string_view line) {
   if (word == "reload") return ControlCommand::kReload;
   if (word == "reset") return ControlCommand::kReset;
   constexpr std::size_t kShown = 40;
-  return Status(ErrorCode::kInvalid,
-                "unknown command '" + std::string(word.substr(0, kShown)) + "': one of status, reload, reset");
+  return Status(ErrorCode::kInvalid, "unknown command '" + std::string(word.substr(0, kShown)) + "': one of status, reload, reset");
 }
 
 std::string control_reply(const Status& status) {

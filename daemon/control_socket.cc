@@ -157,8 +157,7 @@ void ControlSocket::write_reply(Client& client) {
 void ControlSocket::close_client(Client& client) {
   // Unread input would turn the client's end of file into "connection reset"; swallow a bounded amount of it.
   std::array<char, 4096> waste{};
-  for (int i = 0; i < 16 && ::recv(client.fd.get(), waste.data(), waste.size(), 0) > 0; ++i) {
-  }
+  for (int i = 0; i < 16 && ::recv(client.fd.get(), waste.data(), waste.size(), 0) > 0; ++i) {}
   client.fd.reset();
   client.reply = std::string();
 }

@@ -29,7 +29,7 @@ class ControlSocket {
  public:
   static constexpr int kMaxClients = 8;
   static constexpr int kMaxPollFds = kMaxClients + 1;
-  static constexpr std::size_t kMaxRequest = 128;  ///< bytes of a line; more is refused
+  static constexpr std::size_t kMaxRequest = 128;              ///< bytes of a line; more is refused
   static constexpr std::int64_t kPatience_ns = 2'000'000'000;  ///< for a client to say all and read all
 
   /// Owns `path` from now on, guarded by a lock on "path.lock", so that two daemons starting at once cannot both win. A

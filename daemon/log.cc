@@ -79,7 +79,8 @@ void Log::write(LogLevel level, const char* format, va_list arguments) {
     num_suppressed_ = 0;
   }
   std::vsnprintf(text.data(), text.size(), format, arguments);
-  std::replace_if(text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
   write_line(level, text.data());
 }
 
@@ -94,9 +95,8 @@ bool Log::take_token() {
 
 void Log::write_line(LogLevel level, const char* text) {
   std::array<char, 1100> line{};
-  const int length = use_priority_prefix_
-                         ? std::snprintf(line.data(), line.size(), "<%d>%s\n", static_cast<int>(level), text)
-                         : std::snprintf(line.data(), line.size(), "camlocd: %s: %s\n", name_of(level), text);
+  const int length = use_priority_prefix_ ? std::snprintf(line.data(), line.size(), "<%d>%s\n", static_cast<int>(level), text)
+                                          : std::snprintf(line.data(), line.size(), "camlocd: %s: %s\n", name_of(level), text);
   // Nobody to tell when stderr is gone.
   [[maybe_unused]] const ssize_t written = ::write(fd_, line.data(), static_cast<std::size_t>(std::max(length, 0)));
 }

@@ -44,7 +44,8 @@ void declare(CLI::App& app, Arguments& arguments) {
 
 int refuse(camloc::Status status, int code) {
   std::string line = status.message();
-  std::replace_if(line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
+  std::replace_if(
+      line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
   std::fprintf(stderr, "camlocd: %s\n", line.c_str());
   return code;
 }
@@ -73,9 +74,7 @@ int main(int argc, char** argv) {
   declare(app, arguments);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
-  }
+  } catch (const CLI::ParseError& error) { return app.exit(error) == 0 ? 0 : 2; }
   const camloc::Result<camloc::Config> config = camloc::load_config(arguments.config_path, arguments.settings);
   if (!config) return refuse(config.status(), 2);
   if (arguments.should_print) {

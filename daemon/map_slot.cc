@@ -34,7 +34,8 @@ bool MapSlot::was_overwritten() const {
   if (::stat(loaded_->path.c_str(), &now) != 0) return false;  // removed: the mapping lives on
   const struct stat& then = loaded_->file;
   const bool is_same_file = now.st_dev == then.st_dev && now.st_ino == then.st_ino;
-  return is_same_file && (now.st_size != then.st_size || now.st_mtim.tv_sec != then.st_mtim.tv_sec || now.st_mtim.tv_nsec != then.st_mtim.tv_nsec);
+  return is_same_file &&
+         (now.st_size != then.st_size || now.st_mtim.tv_sec != then.st_mtim.tv_sec || now.st_mtim.tv_nsec != then.st_mtim.tv_nsec);
 }
 
 }  // namespace camloc

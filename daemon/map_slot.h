@@ -18,7 +18,7 @@ namespace camloc {
 
 struct MapSlotOptions {
   std::string path;
-  bool needs_datum = false;  ///< poses are wanted in `wcs`
+  bool needs_datum = false;    ///< poses are wanted in `wcs`
   LocalizerOptions localizer;  ///< its pyramid is replaced by the one the map was made with
 };
 

@@ -52,8 +52,8 @@ Status probe_route(const std::string& url) {
   if (::inet_pton(AF_INET, host.c_str(), &address.sin_addr) != 1) return Status::ok();  // LCM's business
   const UniqueFd probe(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (::connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0) return Status::ok();
-  return {ErrorCode::kUnavailable, "no route for " + url + " (" + std::strerror(errno) +
-                                       "); on a machine without network: ip route add 224.0.0.0/4 dev lo"};
+  return {ErrorCode::kUnavailable,
+          "no route for " + url + " (" + std::strerror(errno) + "); on a machine without network: ip route add 224.0.0.0/4 dev lo"};
 }
 
 }  // namespace

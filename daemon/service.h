@@ -100,9 +100,9 @@ class Service {
   bool is_size_checked_ = false;      // of the frames of that device
   bool is_streaming_ = false, is_stalled_ = false, is_over_ = false;
   std::uint64_t report_number_ = 0, num_processed_ = 0;
-  Localization no_map_;               // published without a map
-  std::uint32_t num_resets_ = 0;      // of the current localizer
-  std::uint32_t reset_offset_ = 0;    // of the ones before
+  Localization no_map_;             // published without a map
+  std::uint32_t num_resets_ = 0;    // of the current localizer
+  std::uint32_t reset_offset_ = 0;  // of the ones before
   RepeatFilter map_trouble_, route_trouble_, source_trouble_;
   std::int64_t last_frame_ns_ = 0, next_second_ns_ = 0, watchdog_fed_ns_ = 0;
   std::optional<int> exit_code_;

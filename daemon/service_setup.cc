@@ -24,7 +24,8 @@ Status check_size(const std::string& what, int source_width, int source_height, 
   if (source_width == 0 || (source_width == camera.width && source_height == camera.height)) return Status::ok();
   const std::string calibration = config.source_camera.empty() ? "the source's own calibration" : config.source_camera;
   return {ErrorCode::kInvalid, config.source_url + " delivers " + what + " images of " + size_text(source_width, source_height) + " but " +
-                                   calibration + " is for " + size_text(camera.width, camera.height) + "; set source.camera to its calibration"};
+                                   calibration + " is for " + size_text(camera.width, camera.height) +
+                                   "; set source.camera to its calibration"};
 }
 
 }  // namespace
@@ -79,7 +80,8 @@ Result<std::optional<RgbdCamera>> read_configured_camera(const Config& config) {
 
 Result<RgbdCamera> match_camera(const Config& config, const std::optional<RgbdCamera>& configured, const FrameSourceInfo& source) {
   const std::optional<RgbdCamera>& camera = configured ? configured : source.camera;
-  if (!camera) return Status(ErrorCode::kInvalid, config.source_url + " does not know its calibration; set source.camera to its calibration file");
+  if (!camera)
+    return Status(ErrorCode::kInvalid, config.source_url + " does not know its calibration; set source.camera to its calibration file");
   if (const Status status = check_size("colour", source.color_width, source.color_height, camera->color, config); !status) return status;
   const Intrinsics& depth = camera->is_depth_registered ? camera->color : camera->depth;
   if (const Status status = check_size("depth", source.depth_width, source.depth_height, depth, config); !status) return status;

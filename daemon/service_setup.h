@@ -27,7 +27,8 @@ namespace camloc {
 [[nodiscard]] Result<std::optional<RgbdCamera>> read_configured_camera(const Config& config);
 /// The calibration to use with a source: the configured one, else the source's own. Errors (kInvalid) name both sides:
 /// there is none, or its image size is not the source's.
-[[nodiscard]] Result<RgbdCamera> match_camera(const Config& config, const std::optional<RgbdCamera>& configured, const FrameSourceInfo& source);
+[[nodiscard]] Result<RgbdCamera> match_camera(const Config& config, const std::optional<RgbdCamera>& configured,
+                                              const FrameSourceInfo& source);
 /// Everything above; opens the source too when it is a recording, which disturbs nobody. What may be missing at start
 /// (map, device, network) is not looked at.
 [[nodiscard]] Status check_config(const Config& config);

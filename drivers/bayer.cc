@@ -54,7 +54,8 @@ struct Sums {
 
 Sums sums_at(const Rows& rows, int x, int width) {
   const int left = x > 0 ? x - 1 : 1, right = x + 1 < width ? x + 1 : x - 1;
-  return {rows.centre[x], static_cast<unsigned>(rows.centre[left] + rows.centre[right]), static_cast<unsigned>(rows.above[x] + rows.below[x]),
+  return {rows.centre[x], static_cast<unsigned>(rows.centre[left] + rows.centre[right]),
+          static_cast<unsigned>(rows.above[x] + rows.below[x]),
           static_cast<unsigned>(rows.above[left] + rows.above[right] + rows.below[left] + rows.below[right])};
 }
 
@@ -72,8 +73,8 @@ void gray_block(const Rows& rows, int x, const BlockTaps& taps, std::uint8_t* gr
     const auto horizontal = static_cast<std::uint16_t>(c[i - 1] + c[i + 1]);
     const auto vertical = static_cast<std::uint16_t>(n[i] + s[i]);
     const auto diagonal = static_cast<std::uint16_t>(n[i - 1] + n[i + 1] + s[i - 1] + s[i + 1]);
-    const auto sum = static_cast<std::uint16_t>(taps.centre[at] * c[i] + taps.horizontal[at] * horizontal +
-                                                taps.vertical[at] * vertical + taps.diagonal[at] * diagonal + 128);
+    const auto sum = static_cast<std::uint16_t>(taps.centre[at] * c[i] + taps.horizontal[at] * horizontal + taps.vertical[at] * vertical +
+                                                taps.diagonal[at] * diagonal + 128);
     gray[x + i] = static_cast<std::uint8_t>(sum >> 8);
   }
 }

@@ -24,12 +24,12 @@ enum class StampClock : std::uint8_t {
 };
 
 struct FrameSourceInfo {
-  std::string description;                    ///< one line for people
-  std::string serial;                         ///< of the device, empty where it has none
-  int color_width = 0, color_height = 0;      ///< known after open for recordings, else of the first frame
-  int depth_width = 0, depth_height = 0;      ///< 0 without depth
-  std::optional<std::uint64_t> num_frames;    ///< of a recording, after selection
-  std::optional<RgbdCamera> camera;           ///< where the source knows its own calibration
+  std::string description;                  ///< one line for people
+  std::string serial;                       ///< of the device, empty where it has none
+  int color_width = 0, color_height = 0;    ///< known after open for recordings, else of the first frame
+  int depth_width = 0, depth_height = 0;    ///< 0 without depth
+  std::optional<std::uint64_t> num_frames;  ///< of a recording, after selection
+  std::optional<RgbdCamera> camera;         ///< where the source knows its own calibration
   StampClock stamp_clock = StampClock::kRecorded;
 };
 

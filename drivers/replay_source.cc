@@ -102,7 +102,7 @@ class ReplaySource final : public FrameSource {
   FrameSourceInfo info_;
   Pacer pacer_;
   ImageReader reader_;
-  FrameBuffer loaded_;         // decoded, waiting for its time
+  FrameBuffer loaded_;  // decoded, waiting for its time
   Status load_status_;
   bool is_loaded_ = false;
   std::size_t position_ = 0;
@@ -127,7 +127,7 @@ Result<Recording> select_recording(const SourceUrl& url, double rate_hz) {
 }
 
 /// Size of the first image that can be read: a recording may begin with a broken one.
-Result<ImageSize> first_image_size(const std::vector<SequenceFrame>& frames, std::string SequenceFrame::* path) {
+Result<ImageSize> first_image_size(const std::vector<SequenceFrame>& frames, std::string SequenceFrame::*path) {
   ImageReader reader;
   Status first_error;
   for (const SequenceFrame& frame : frames) {
@@ -153,7 +153,8 @@ Result<FrameSourceInfo> describe(const Recording& recording) {
   }
   info.num_frames = recording.frames.size();
   info.description = "recording " + recording.folder + ", " + std::to_string(recording.frames.size()) + " of " +
-                     std::to_string(recording.num_recorded) + " frames, " + std::to_string(color->width) + "x" + std::to_string(color->height);
+                     std::to_string(recording.num_recorded) + " frames, " + std::to_string(color->width) + "x" +
+                     std::to_string(color->height);
   const std::string camera_path = (std::filesystem::path(recording.folder) / "camera.toml").string();
   std::error_code ignored;
   if (std::filesystem::is_regular_file(camera_path, ignored)) {
@@ -179,8 +180,8 @@ Result<std::unique_ptr<FrameSource>> open_replay_source(const SourceUrl& url, co
   if (!recording) return recording.status();
   Result<FrameSourceInfo> info = describe(*recording);
   if (!info) return info.status();
-  return std::unique_ptr<FrameSource>(
-      std::make_unique<ReplaySource>(std::move(recording).value(), ReplayOptions{*speed, loop == "1", options.wants_color}, std::move(info).value()));
+  return std::unique_ptr<FrameSource>(std::make_unique<ReplaySource>(
+      std::move(recording).value(), ReplayOptions{*speed, loop == "1", options.wants_color}, std::move(info).value()));
 }
 
 }  // namespace camloc

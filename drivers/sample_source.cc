@@ -35,7 +35,8 @@ std::vector<std::uint8_t> paint_face(int size, std::uint32_t seed) {
   const auto below = [&random](int n) { return static_cast<int>(random() % static_cast<std::uint32_t>(n)); };
   for (int extent = size / 3; extent >= 4; extent = extent * 3 / 4) {
     const int count = size * size / (extent * extent * 6) + 4;
-    for (int i = 0; i < count; ++i) fill(&texture, size, below(size), below(size), extent / 2 + below(extent), extent / 2 + below(extent), 20 + below(216));
+    for (int i = 0; i < count; ++i)
+      fill(&texture, size, below(size), below(size), extent / 2 + below(extent), extent / 2 + below(extent), 20 + below(216));
   }
   return texture;
 }
@@ -110,7 +111,8 @@ Rigid3 sample_pose(std::uint64_t index) {
 }
 
 SampleRoom::SampleRoom() {
-  for (std::size_t face = 0; face < faces_.size(); ++face) faces_[face] = paint_face(kTextureSize, 1000U + static_cast<std::uint32_t>(face));
+  for (std::size_t face = 0; face < faces_.size(); ++face)
+    faces_[face] = paint_face(kTextureSize, 1000U + static_cast<std::uint32_t>(face));
 }
 
 std::uint8_t SampleRoom::shade(int face, float u, float v) const {

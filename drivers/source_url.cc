@@ -35,7 +35,8 @@ std::string percent_decoded(std::string_view text) {
 }
 
 bool is_scheme(std::string_view text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '+' || c == '-'; });
+  return !text.empty() &&
+         std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '+' || c == '-'; });
 }
 
 Status parse_options(std::string_view query, SourceUrl* url) {
@@ -70,8 +71,8 @@ Result<double> SourceUrl::number_option(const std::string& key, double fallback,
   if (option == options.end()) return fallback;
   const std::optional<double> value = parse_double(option->second);
   if (!value || !(*value >= low && *value <= high)) {
-    return Status(ErrorCode::kInvalid, text + ": option " + key + "=" + option->second + ": expected a number from " +
-                                           short_number(low) + " to " + short_number(high));
+    return Status(ErrorCode::kInvalid, text + ": option " + key + "=" + option->second + ": expected a number from " + short_number(low) +
+                                           " to " + short_number(high));
   }
   return *value;
 }

@@ -35,8 +35,7 @@ namespace camloc {
 }
 
 /// First byte after `count` elements of `element_bytes` that start at `offset`, or nothing where it does not fit.
-[[nodiscard]] inline std::optional<std::uint64_t> checked_end(std::uint64_t offset, std::uint64_t count,
-                                                                std::uint64_t element_bytes) {
+[[nodiscard]] inline std::optional<std::uint64_t> checked_end(std::uint64_t offset, std::uint64_t count, std::uint64_t element_bytes) {
   const std::optional<std::uint64_t> bytes = checked_multiply(count, element_bytes);
   if (!bytes) return std::nullopt;
   return checked_add(offset, *bytes);

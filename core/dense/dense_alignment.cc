@@ -15,15 +15,15 @@
 namespace camloc {
 namespace {
 
-constexpr double kKernelSigmas = 2;               // Huber
+constexpr double kKernelSigmas = 2;  // Huber
 constexpr double kDepthInlierSigmas = 4;
-constexpr double kMaxDepthStepShare = 0.05;       // a cell beside one so much nearer or farther is at an edge
-constexpr double kDepthSigmaShare = 0.5, kDepthSigmaM = 0.001;   // an average of cells is better than a pixel, but shares its bias
+constexpr double kMaxDepthStepShare = 0.05;                     // a cell beside one so much nearer or farther is at an edge
+constexpr double kDepthSigmaShare = 0.5, kDepthSigmaM = 0.001;  // an average of cells is better than a pixel, but shares its bias
 // Of cells: neighbours share their errors, in grey more than in depth (the sigmas fit the synthetic building's truth).
 constexpr double kIndependentGreyShare = 0.01, kIndependentDepthShare = 0.2;
-constexpr double kSlopeNoise = 6;                 // three times the square of a slope that is nothing but noise, in terms of the residuals'
-constexpr int kSlowRadius = 5;                    // cells
-constexpr double kSettled = 3e-5;                 // metres and radians
+constexpr double kSlopeNoise = 6;  // three times the square of a slope that is nothing but noise, in terms of the residuals'
+constexpr int kSlowRadius = 5;     // cells
+constexpr double kSettled = 3e-5;  // metres and radians
 
 /// Grey level and inverse depth (1 / m, linear over the image of a plane) between four cells, with their slopes per cell.
 struct Surroundings {
@@ -36,7 +36,7 @@ void remove_slow_changes(const ViewThumbnail& view, std::vector<float>* grey) {
     return sums[static_cast<std::size_t>(y) * stride + static_cast<std::size_t>(x)];
   };
   const std::size_t stride = static_cast<std::size_t>(view.width) + 1;
-  std::vector<double> sums(stride * (static_cast<std::size_t>(view.height) + 1), 0.0);   // of all cells above and to the left
+  std::vector<double> sums(stride * (static_cast<std::size_t>(view.height) + 1), 0.0);  // of all cells above and to the left
   for (int y = 0; y < view.height; ++y) {
     for (int x = 0; x < view.width; ++x) {
       sums[static_cast<std::size_t>(y + 1) * stride + static_cast<std::size_t>(x + 1)] =
@@ -48,7 +48,8 @@ void remove_slow_changes(const ViewThumbnail& view, std::vector<float>* grey) {
     for (int x = 0; x < view.width; ++x) {
       const int radius = std::min({kSlowRadius, x, y, view.width - 1 - x, view.height - 1 - y});
       const int left = x - radius, right = x + radius + 1, top = y - radius, bottom = y + radius + 1;
-      const double sum = at(sums, stride, right, bottom) - at(sums, stride, left, bottom) - at(sums, stride, right, top) + at(sums, stride, left, top);
+      const double sum =
+          at(sums, stride, right, bottom) - at(sums, stride, left, bottom) - at(sums, stride, right, top) + at(sums, stride, left, top);
       const double mean = sum / ((2 * radius + 1) * (2 * radius + 1));
       (*grey)[view.index(x, y)] = ViewThumbnail::kGreyUnit * static_cast<float>(view.grey[view.index(x, y)] - mean);
     }
@@ -73,8 +74,7 @@ void fit_slopes(const ViewThumbnail& view, const std::vector<float>& inverse, st
           sum += inverse[view.index(x + dx, y + dy)] * Eigen::Vector2f(static_cast<float>(dx), static_cast<float>(dy));
         }
       }
-      if (nearest > 0 && farthest - nearest <= kMaxDepthStepShare * 7 * nearest)
-        (*slopes)[view.index(x, y)] = sum / kSumOfSquares;
+      if (nearest > 0 && farthest - nearest <= kMaxDepthStepShare * 7 * nearest) (*slopes)[view.index(x, y)] = sum / kSumOfSquares;
     }
   }
 }
@@ -109,7 +109,9 @@ std::optional<Surroundings> look(const ViewThumbnail& view, const std::vector<fl
 }
 
 // A slope that noise alone may have made says nothing about the motion.
-double share_of_signal(double slope_squared, double noise_squared) { return slope_squared > noise_squared ? 1 - noise_squared / slope_squared : 0; }
+double share_of_signal(double slope_squared, double noise_squared) {
+  return slope_squared > noise_squared ? 1 - noise_squared / slope_squared : 0;
+}
 
 double huber_weight(double residual_sigmas) {
   const double size = std::abs(residual_sigmas);
@@ -154,7 +156,7 @@ DenseAligner::Equations DenseAligner::linearize(const ViewThumbnail& a, const Vi
     const Eigen::Vector2d cell = (pixel.array() + 0.5) / a.cell_px - 0.5;
     const auto seen = look(a, grey_a_, inverse_a_, slopes_a_, cell.x(), cell.y());
     if (!seen) continue;
-    Eigen::Matrix<double, 3, 6> dp;   // R [I, -[p_b]x]
+    Eigen::Matrix<double, 3, 6> dp;  // R [I, -[p_b]x]
     dp.leftCols<3>() = R;
     for (int k = 0; k < 3; ++k) dp.col(3 + k) = R * Eigen::Vector3d::Unit(k).cross(point.p_b);
     const Vector6d du = (fx / p.z() * (dp.row(0) - p.x() / p.z() * dp.row(2))).transpose();
@@ -171,7 +173,7 @@ DenseAligner::Equations DenseAligner::linearize(const ViewThumbnail& a, const Vi
   }
   Equations equations;
   if (pairs_.empty()) return equations;
-  grey_mean /= static_cast<double>(pairs_.size());   // the exposure may change
+  grey_mean /= static_cast<double>(pairs_.size());  // the exposure may change
   std::vector<double> sizes;
   sizes.reserve(pairs_.size());
   for (const Pair& pair : pairs_) sizes.push_back(std::abs(pair.grey - grey_mean));
@@ -180,10 +182,10 @@ DenseAligner::Equations DenseAligner::linearize(const ViewThumbnail& a, const Vi
   std::size_t num_inliers = 0;
   for (const Pair& pair : pairs_) {
     const double grey = (pair.grey - grey_mean) / grey_sigma, depth = pair.depth / pair.depth_sigma;
-    if (std::abs(depth) > kDepthInlierSigmas) continue;   // another surface
+    if (std::abs(depth) > kDepthInlierSigmas) continue;  // another surface
     ++num_inliers;
-    const double grey_weight = kIndependentGreyShare * huber_weight(grey) / (grey_sigma * grey_sigma) *
-                               share_of_signal(pair.slope_squared, noise_slope);
+    const double grey_weight =
+        kIndependentGreyShare * huber_weight(grey) / (grey_sigma * grey_sigma) * share_of_signal(pair.slope_squared, noise_slope);
     const double depth_weight = kIndependentDepthShare * huber_weight(depth) / (pair.depth_sigma * pair.depth_sigma);
     equations.H += grey_weight * pair.J_grey * pair.J_grey.transpose() + depth_weight * pair.J_depth * pair.J_depth.transpose();
     equations.g += grey_weight * (pair.grey - grey_mean) * pair.J_grey + depth_weight * pair.depth * pair.J_depth;
@@ -193,7 +195,8 @@ DenseAligner::Equations DenseAligner::linearize(const ViewThumbnail& a, const Vi
   return equations;
 }
 
-DenseAlignment DenseAligner::align(const ViewThumbnail& a, const ViewThumbnail& b, const Rigid3& T_a_b_predicted, const Matrix6d& covariance) {
+DenseAlignment DenseAligner::align(const ViewThumbnail& a, const ViewThumbnail& b, const Rigid3& T_a_b_predicted,
+                                   const Matrix6d& covariance) {
   DenseAlignment result;
   if (a.empty() || b.empty()) return result;
   prepare(b);

@@ -17,16 +17,16 @@ namespace camloc {
 
 struct DenseAlignmentOptions {
   int max_iterations = 25;
-  double min_grey_sigma = 0.5;          ///< grey levels; the residuals may say more
-  double min_overlap = 0.35;            ///< share of cells with depth that fall on cells with depth
-  double min_inlier_share = 0.75;       ///< of those, that agree in depth
-  double max_prior_sigmas = 5;          ///< how far from the prediction the result may be
+  double min_grey_sigma = 0.5;     ///< grey levels; the residuals may say more
+  double min_overlap = 0.35;       ///< share of cells with depth that fall on cells with depth
+  double min_inlier_share = 0.75;  ///< of those, that agree in depth
+  double max_prior_sigmas = 5;     ///< how far from the prediction the result may be
 };
 
 struct DenseAlignment {
   bool is_aligned = false;
   Rigid3 T_a_b;
-  Matrix6d covariance = Matrix6d::Identity();   ///< of pose_error() of T_a_b (metres then radians, axes of a)
+  Matrix6d covariance = Matrix6d::Identity();  ///< of pose_error() of T_a_b (metres then radians, axes of a)
   double overlap = 0, inlier_share = 0;
 };
 
@@ -37,7 +37,8 @@ class DenseAligner {
 
   /// Starts at the prediction, which is a measurement like any other: directions that the views say nothing about, as along a
   /// bare wall, stay as predicted, with the covariance of the prediction (that of pose_error(), axes of a).
-  [[nodiscard]] DenseAlignment align(const ViewThumbnail& a, const ViewThumbnail& b, const Rigid3& T_a_b_predicted, const Matrix6d& covariance);
+  [[nodiscard]] DenseAlignment align(const ViewThumbnail& a, const ViewThumbnail& b, const Rigid3& T_a_b_predicted,
+                                     const Matrix6d& covariance);
 
  private:
   struct Equations {
@@ -54,11 +55,11 @@ class DenseAligner {
   };
   struct Pair {
     Vector6d J_grey, J_depth;
-    double grey, depth, depth_sigma, slope_squared;   ///< depth: inverse, 1 / m
+    double grey, depth, depth_sigma, slope_squared;  ///< depth: inverse, 1 / m
   };
   RgbdCamera camera_;
   DenseAlignmentOptions options_;
-  std::vector<float> grey_a_, grey_b_;   ///< without slow changes
+  std::vector<float> grey_a_, grey_b_;     ///< without slow changes
   std::vector<float> inverse_a_;           ///< of the depth, 1 / m
   std::vector<Eigen::Vector2f> slopes_a_;  ///< of that, a cell
   std::vector<Point> points_;

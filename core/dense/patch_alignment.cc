@@ -13,9 +13,9 @@ namespace {
 
 constexpr int kRadius = 5, kSide = 2 * kRadius + 1;
 constexpr double kWeightSigmaPx = 3.5;
-constexpr double kMinVariance = 9;          // grey levels squared, below which there is nothing to align
-constexpr double kNoiseVariance = 4;        // of a pixel, at least: sensor noise and compression
-constexpr double kCorrelated = 4;           // neighbouring pixels of a smoothed image do not err independently
+constexpr double kMinVariance = 9;    // grey levels squared, below which there is nothing to align
+constexpr double kNoiseVariance = 4;  // of a pixel, at least: sensor noise and compression
+constexpr double kCorrelated = 4;     // neighbouring pixels of a smoothed image do not err independently
 constexpr double kMaxStepPx = 1.0, kSettledPx = 0.01, kUnsettledPx = 0.1;
 
 /// Pixels within the circle, as offsets from its middle, with their weights.
@@ -49,7 +49,8 @@ Window make_window() {
 /// Bilinear; negative outside.
 double grey_at(const FeaturePatch& patch, double x, double y) {
   const double column = std::floor(x), row = std::floor(y);
-  if (!(column >= -FeaturePatch::kHalf && row >= -FeaturePatch::kHalf && column < FeaturePatch::kHalf && row < FeaturePatch::kHalf)) return -1;
+  if (!(column >= -FeaturePatch::kHalf && row >= -FeaturePatch::kHalf && column < FeaturePatch::kHalf && row < FeaturePatch::kHalf))
+    return -1;
   const int dx = static_cast<int>(column), dy = static_cast<int>(row);
   const double a = x - column, b = y - row;
   return (1 - b) * ((1 - a) * patch.at(dx, dy) + a * patch.at(dx + 1, dy)) +
@@ -60,7 +61,7 @@ double grey_at(const FeaturePatch& patch, double x, double y) {
 struct Template {
   std::array<double, kSide * kSide> grey{}, along_x{}, along_y{};
   double variance = 0;
-  Eigen::Matrix2d gradients = Eigen::Matrix2d::Zero();   ///< weighted sum of their products
+  Eigen::Matrix2d gradients = Eigen::Matrix2d::Zero();  ///< weighted sum of their products
 };
 
 void subtract_mean(const Window& window, std::array<double, kSide * kSide>* values) {
@@ -80,7 +81,8 @@ std::optional<Template> make_template(const Window& window, const FeaturePatch& 
   }
   Template made;
   for (std::size_t i = 0; i < window.size; ++i) {
-    const auto x = static_cast<std::size_t>(window.pixels[i].dx + kRadius + 1), y = static_cast<std::size_t>(window.pixels[i].dy + kRadius + 1);
+    const auto x = static_cast<std::size_t>(window.pixels[i].dx + kRadius + 1),
+               y = static_cast<std::size_t>(window.pixels[i].dy + kRadius + 1);
     const double left = warped[y][x - 1], right = warped[y][x + 1], above = warped[y - 1][x], below = warped[y + 1][x];
     if (std::min({warped[y][x], left, right, above, below}) < 0) return std::nullopt;
     made.grey[i] = warped[y][x];
@@ -104,7 +106,8 @@ struct Comparison {
   Eigen::Vector2d step = Eigen::Vector2d::Zero();
 };
 
-std::optional<Comparison> compare(const Window& window, const Template& wanted, const FeaturePatch& target, const Eigen::Vector2d& position) {
+std::optional<Comparison> compare(const Window& window, const Template& wanted, const FeaturePatch& target,
+                                  const Eigen::Vector2d& position) {
   std::array<double, kSide * kSide> grey;
   for (std::size_t i = 0; i < window.size; ++i) {
     grey[i] = grey_at(target, position.x() + window.pixels[i].dx, position.y() + window.pixels[i].dy);
@@ -161,8 +164,10 @@ PatchAlignment align_patch(const PatchAlignmentOptions& options, const FeaturePa
   }
   if (last_step_px > kUnsettledPx || result.shift_px.norm() > options.max_shift_px) return result;
   result.sigma_px = worst_sigma_px(*wanted, found);
-  if (result.correlation < options.min_correlation) result.verdict = PatchVerdict::kUnlike;
-  else result.verdict = result.sigma_px <= options.max_sigma_px ? PatchVerdict::kAligned : PatchVerdict::kFlat;
+  if (result.correlation < options.min_correlation)
+    result.verdict = PatchVerdict::kUnlike;
+  else
+    result.verdict = result.sigma_px <= options.max_sigma_px ? PatchVerdict::kAligned : PatchVerdict::kFlat;
   return result;
 }
 

@@ -15,24 +15,24 @@ namespace camloc {
 
 struct PatchAlignmentOptions {
   int max_iterations = 15;
-  double max_shift_px = 2.5;         ///< pixels of the target's level
-  double min_correlation = 0.8;      ///< of the two patches once they are aligned, brightness and contrast aside
-  double max_sigma_px = 0.7;         ///< of the position, in the direction in which it is known least; a detector is not better
+  double max_shift_px = 2.5;     ///< pixels of the target's level
+  double min_correlation = 0.8;  ///< of the two patches once they are aligned, brightness and contrast aside
+  double max_sigma_px = 0.7;     ///< of the position, in the direction in which it is known least; a detector is not better
 };
 
 enum class PatchVerdict : std::uint8_t {
   kAligned,
-  kOutside,       ///< the warp leads out of the reference
-  kFlat,          ///< too little texture, or an edge: nothing says where along it
-  kLost,          ///< moved too far, or did not settle
-  kUnlike,        ///< the patches do not show the same
+  kOutside,  ///< the warp leads out of the reference
+  kFlat,     ///< too little texture, or an edge: nothing says where along it
+  kLost,     ///< moved too far, or did not settle
+  kUnlike,   ///< the patches do not show the same
 };
 
 struct PatchAlignment {
   PatchVerdict verdict = PatchVerdict::kLost;
-  Eigen::Vector2d shift_px = Eigen::Vector2d::Zero();   ///< of what the reference shows in its middle, from the middle of the target
+  Eigen::Vector2d shift_px = Eigen::Vector2d::Zero();  ///< of what the reference shows in its middle, from the middle of the target
   double correlation = 0;
-  double sigma_px = 0;                                  ///< in the direction in which the position is known least
+  double sigma_px = 0;  ///< in the direction in which the position is known least
 };
 
 /// A pixel d of the target, counted from the point sought, corresponds to A_reference_target * d of the reference, counted from

@@ -14,17 +14,19 @@
 namespace camloc {
 
 struct ViewThumbnail {
-  static constexpr int kColumns = 80;                     ///< aimed at
+  static constexpr int kColumns = 80;  ///< aimed at
   static constexpr float kGreyUnit = 1.0F / 128, kDepthUnitM = 0.00025F;
 
-  int width = 0, height = 0, cell_px = 0;                 ///< cells, and pixels of the colour image along the side of one
-  std::vector<std::uint16_t> grey;                        ///< kGreyUnit grey levels
+  int width = 0, height = 0, cell_px = 0;  ///< cells, and pixels of the colour image along the side of one
+  std::vector<std::uint16_t> grey;         ///< kGreyUnit grey levels
   /// kDepthUnitM along the optical axis of the colour camera, 0 = none. A mean of 1 / depth, which is linear over the image of a
   /// plane: a mean of depths lies behind it.
   std::vector<std::uint16_t> depth;
 
   [[nodiscard]] bool empty() const { return grey.empty(); }
-  [[nodiscard]] std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x); }
+  [[nodiscard]] std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  }
 };
 
 /// Makes thumbnails of frames whose sizes are those of the camera. Depth that is not registered is projected into the colour

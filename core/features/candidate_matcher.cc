@@ -89,15 +89,13 @@ std::span<const Match> CandidateMatcher::match(const Features& features, const C
   return matches_;
 }
 
-void CandidateMatcher::find_best_candidates(const Features& features, const CandidateSet& candidates,
-                                            std::size_t num_features) {
+void CandidateMatcher::find_best_candidates(const Features& features, const CandidateSet& candidates, std::size_t num_features) {
   const hamming::Kernels& kernels = hamming::best_kernels();
   const bool has_ratio_test = options_.max_ratio < 1;
   std::array<hamming::TopTwo, hamming::kMaxQueriesPerCall> top;
   for (std::size_t begin = 0; begin < num_features; begin += top.size()) {
     const std::size_t count = std::min(top.size(), num_features - begin);
-    hamming::nearest_two(kernels, features.descriptors.data() + begin, count, candidates.descriptors.data(), candidates.size,
-                         top.data());
+    hamming::nearest_two(kernels, features.descriptors.data() + begin, count, candidates.descriptors.data(), candidates.size, top.data());
     for (std::size_t q = 0; q < count; ++q) {
       const auto distance = static_cast<std::uint16_t>(top[q].best >> 32);
       if (distance > options_.max_distance || distance >= kNoDistance) continue;
@@ -114,8 +112,7 @@ void CandidateMatcher::find_best_candidates(const Features& features, const Cand
   }
 }
 
-std::uint16_t CandidateMatcher::rival_distance(const Descriptor& descriptor, const CandidateSet& candidates,
-                                               std::int32_t landmark) {
+std::uint16_t CandidateMatcher::rival_distance(const Descriptor& descriptor, const CandidateSet& candidates, std::int32_t landmark) {
   hamming_distances(descriptor, {candidates.descriptors.data(), candidates.size}, distances_.data());
   // Strike the landmark's own appearances out, then take the plain minimum.
   for (std::int32_t i = first_in_slot_[slot_of(candidates, landmark)]; i >= 0; i = next_candidate_[static_cast<std::size_t>(i)])
@@ -149,8 +146,7 @@ std::int32_t CandidateMatcher::best_feature_of(std::size_t slot, const Features&
   const std::size_t num_features = std::min(features.size(), max_features_);
   std::uint16_t best_distance = kNoDistance;
   std::int32_t best = -1;
-  for (std::int32_t candidate = first_in_slot_[slot]; candidate >= 0;
-       candidate = next_candidate_[static_cast<std::size_t>(candidate)]) {
+  for (std::int32_t candidate = first_in_slot_[slot]; candidate >= 0; candidate = next_candidate_[static_cast<std::size_t>(candidate)]) {
     hamming_distances(candidates.descriptors[static_cast<std::size_t>(candidate)], {features.descriptors.data(), num_features},
                       distances_.data());
     const std::uint16_t distance = hamming::smallest(distances_.data(), num_features);

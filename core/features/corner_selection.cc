@@ -127,8 +127,8 @@ void CornerSelector::take_evenly(int count) {
     if (selected_.size() == begin) break;
     if (selected_.size() >= static_cast<std::size_t>(count)) {
       const auto first = selected_.begin() + static_cast<std::ptrdiff_t>(begin);
-      std::nth_element(first, selected_.begin() + count - (selected_.size() == static_cast<std::size_t>(count) ? 1 : 0),
-                       selected_.end(), is_stronger);
+      std::nth_element(first, selected_.begin() + count - (selected_.size() == static_cast<std::size_t>(count) ? 1 : 0), selected_.end(),
+                       is_stronger);
       selected_.resize(static_cast<std::size_t>(count));
       break;
     }

@@ -21,17 +21,16 @@ struct Corner {
 
 struct CornerOptions {
   int threshold = 20;
-  int min_threshold = 7;   ///< for cells without a corner at `threshold`
+  int min_threshold = 7;  ///< for cells without a corner at `threshold`
   int cell_px = 32;
-  int border_px = 19;      ///< no corners closer to the border of the level
+  int border_px = 19;  ///< no corners closer to the border of the level
 };
 
 /// Allocates at construction only. Not thread-safe.
 class CornerSelector {
  public:
   /// Levels given to select() are at most this large, and at most `max_corners` are asked for.
-  CornerSelector(int max_width, int max_height, int max_corners, const CornerOptions& options,
-                 FastKernel kernel = best_fast_kernel());
+  CornerSelector(int max_width, int max_height, int max_corners, const CornerOptions& options, FastKernel kernel = best_fast_kernel());
   /// At most `count` corners, ordered by row, then column; valid until the next call.
   std::span<const Corner> select(const PaddedImage& level, int count);
   /// Corners dropped because their cell already held kMaxPerCell stronger ones, since construction.
@@ -41,10 +40,10 @@ class CornerSelector {
 
  private:
   struct Cell {
-    int x0, y0, x1, y1;   ///< pixels [x0, x1) x [y0, y1)
+    int x0, y0, x1, y1;  ///< pixels [x0, x1) x [y0, y1)
     Corner* corners;
     int count;
-    bool is_weak;         ///< had no corner at the first threshold
+    bool is_weak;  ///< had no corner at the first threshold
   };
   void lay_out_cells(const PaddedImage& level);
   void score(const PaddedImage& level, int x0, int y0, int x1, int y1, int threshold);
@@ -55,8 +54,8 @@ class CornerSelector {
   CornerOptions options_;
   FastScoresFunction fast_scores_;
   PaddedImage scores_;
-  std::vector<Cell> cells_;   ///< row by row
-  int columns_ = 0;           ///< of cells
+  std::vector<Cell> cells_;  ///< row by row
+  int columns_ = 0;          ///< of cells
   std::vector<Corner> corner_of_cell_;
   std::vector<Corner> selected_;
   std::uint64_t num_clipped_ = 0;

@@ -18,10 +18,10 @@ struct alignas(32) Descriptor {
 };
 
 struct Keypoint {
-  float u = 0, v = 0;        ///< pixels of level 0, centres at integers
-  float angle_rad = 0;       ///< orientation in [0, 2 pi), x towards y
-  float response = 0;        ///< corner score, for ranking within a level
-  std::uint8_t level = 0;    ///< pyramid level, 0 = full size
+  float u = 0, v = 0;      ///< pixels of level 0, centres at integers
+  float angle_rad = 0;     ///< orientation in [0, 2 pi), x towards y
+  float response = 0;      ///< corner score, for ranking within a level
+  std::uint8_t level = 0;  ///< pyramid level, 0 = full size
 };
 
 /// Features of one image. `keypoints[i]` and `descriptors[i]` belong together.

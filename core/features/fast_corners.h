@@ -22,8 +22,7 @@ enum class FastKernel : std::uint8_t { kScalar, kSse2, kAvx2 };
 /// Scores of `count` pixels from `pixels` on: scores[i] is the score of pixels[i] if it is a corner at `threshold` (>= 1),
 /// else 0. Reads three pixels around and up to 35 pixels past the last one in each of the seven rows; writes count scores
 /// and nothing else. All kernels give the same scores.
-using FastScoresFunction = void (*)(const std::uint8_t* pixels, std::ptrdiff_t stride, int count, int threshold,
-                                    std::uint8_t* scores);
+using FastScoresFunction = void (*)(const std::uint8_t* pixels, std::ptrdiff_t stride, int count, int threshold, std::uint8_t* scores);
 
 /// The kernel must be available.
 [[nodiscard]] FastScoresFunction fast_scores_function(FastKernel kernel);

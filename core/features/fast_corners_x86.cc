@@ -105,8 +105,7 @@ void scores_sse2(const std::uint8_t* pixels, std::ptrdiff_t stride, int count, i
   }
 }
 
-CAMLOC_AVX2 void scores_avx2(const std::uint8_t* pixels, std::ptrdiff_t stride, int count, int threshold,
-                             std::uint8_t* scores) {
+CAMLOC_AVX2 void scores_avx2(const std::uint8_t* pixels, std::ptrdiff_t stride, int count, int threshold, std::uint8_t* scores) {
   std::ptrdiff_t offset[16];
   circle_offsets(stride, offset);
   const __m256i wide_threshold = _mm256_set1_epi8(static_cast<char>(threshold));

@@ -13,7 +13,7 @@ namespace camloc {
 
 struct FeaturePatch {
   static constexpr int kHalf = 8, kSide = 2 * kHalf + 1;
-  std::array<std::uint8_t, static_cast<std::size_t>(kSide* kSide)> pixels{};   ///< row by row, the feature in the middle
+  std::array<std::uint8_t, static_cast<std::size_t>(kSide* kSide)> pixels{};  ///< row by row, the feature in the middle
 
   /// Grey level at whole pixels from the feature, each in [-kHalf, kHalf].
   [[nodiscard]] std::uint8_t at(int dx, int dy) const { return pixels[static_cast<std::size_t>((dy + kHalf) * kSide + dx + kHalf)]; }

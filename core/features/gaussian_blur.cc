@@ -27,8 +27,8 @@ constexpr float kWeights[4] = {0.21610594100794114F, 0.19071282356963737F, 0.131
 
 /// Rounds half to even: adding 1.5 * 2^23 leaves the integer in the low bits.
 [[gnu::always_inline]] inline void down_columns(const float* const* rows, int width, std::uint8_t* __restrict out) {
-  const float *__restrict a = rows[0], *__restrict b = rows[1], *__restrict c = rows[2], *__restrict d = rows[3];
-  const float *__restrict e = rows[4], *__restrict f = rows[5], *__restrict g = rows[6];
+  const float* __restrict a = rows[0], * __restrict b = rows[1], * __restrict c = rows[2], * __restrict d = rows[3];
+  const float* __restrict e = rows[4], * __restrict f = rows[5], * __restrict g = rows[6];
   for (int x = 0; x < width; ++x) {
     const float sum = weighted(d[x], c[x] + e[x], b[x] + f[x], a[x] + g[x]);
     out[x] = static_cast<std::uint8_t>(std::bit_cast<std::uint32_t>(sum + 12582912.F));
@@ -39,9 +39,7 @@ constexpr float kWeights[4] = {0.21610594100794114F, 0.19071282356963737F, 0.131
 void across_row_any(const std::uint8_t* p, int width, float* out) { across_row(p, width, out); }
 void down_columns_any(const float* const* rows, int width, std::uint8_t* out) { down_columns(rows, width, out); }
 #if defined(__x86_64__)
-__attribute__((target("avx2"))) void across_row_avx2(const std::uint8_t* p, int width, float* out) {
-  across_row(p, width, out);
-}
+__attribute__((target("avx2"))) void across_row_avx2(const std::uint8_t* p, int width, float* out) { across_row(p, width, out); }
 __attribute__((target("avx2"))) void down_columns_avx2(const float* const* rows, int width, std::uint8_t* out) {
   down_columns(rows, width, out);
 }
@@ -81,8 +79,7 @@ void GaussianBlur::apply(const PaddedImage& src, int first_row, int last_row, Pa
   assert(src.width == dst->width && src.height == dst->height);
   const auto ring_row = [&](int y) { return ring_.data() + static_cast<std::size_t>((y + 8) & 7) * ring_stride_; };
   // Row y of the ring may lie outside the image (-3 .. height + 2); its pixels are those of the mirrored row.
-  for (int y = first_row - kRadius; y < first_row + kRadius; ++y)
-    blur_row(src, mirrored_index(y, src.height), ring_row(y));
+  for (int y = first_row - kRadius; y < first_row + kRadius; ++y) blur_row(src, mirrored_index(y, src.height), ring_row(y));
   for (int y = first_row; y < last_row; ++y) {
     blur_row(src, mirrored_index(y + kRadius, src.height), ring_row(y + kRadius));
     const float* rows[7];

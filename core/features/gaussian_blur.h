@@ -26,8 +26,8 @@ class GaussianBlur {
 
   void (*across_row_)(const std::uint8_t* p, int width, float* out);
   void (*down_columns_)(const float* const* rows, int width, std::uint8_t* out);
-  std::vector<std::uint8_t> mirrored_;        ///< one row with three mirrored pixels on both sides
-  std::vector<float> ring_;                   ///< eight horizontally smoothed rows
+  std::vector<std::uint8_t> mirrored_;  ///< one row with three mirrored pixels on both sides
+  std::vector<float> ring_;             ///< eight horizontally smoothed rows
   std::size_t ring_stride_;
 };
 

@@ -30,8 +30,7 @@ void distances_at_scalar(const Descriptor& query, const Descriptor* train, const
   for (std::size_t i = 0; i < count; ++i) distances[i] = static_cast<std::uint16_t>(distance_scalar(query, train[index[i]]));
 }
 
-void nearest_scalar(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train,
-                    TopTwo* top) {
+void nearest_scalar(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train, TopTwo* top) {
   nearest_by_pairs(queries, num_queries, train, 0, num_train, top, distance_scalar);
 }
 
@@ -74,8 +73,8 @@ const Kernels& best_kernels() {
   return best;
 }
 
-void nearest_two(const Kernels& kernels, const Descriptor* queries, std::size_t num_queries, const Descriptor* train,
-                 std::size_t num_train, TopTwo* top) {
+void nearest_two(const Kernels& kernels, const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train,
+                 TopTwo* top) {
   for (std::size_t begin = 0; begin < num_queries; begin += kMaxQueriesPerCall) {
     const std::size_t count = std::min(kMaxQueriesPerCall, num_queries - begin);
     std::fill_n(top + begin, count, TopTwo{});
@@ -98,8 +97,8 @@ const char* to_string(HammingKernel kernel) {
 
 std::vector<HammingKernel> available_hamming_kernels() {
   std::vector<HammingKernel> kernels;
-  for (const auto kernel : {HammingKernel::kScalar, HammingKernel::kPopcnt, HammingKernel::kAvx2, HammingKernel::kAvx512,
-                            HammingKernel::kNeon})
+  for (const auto kernel :
+       {HammingKernel::kScalar, HammingKernel::kPopcnt, HammingKernel::kAvx2, HammingKernel::kAvx512, HammingKernel::kNeon})
     if (hamming::is_available(kernel)) kernels.push_back(kernel);
   return kernels;
 }

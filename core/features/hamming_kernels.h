@@ -32,9 +32,7 @@ struct TopTwo {
   }
 };
 
-inline std::uint64_t make_key(std::uint32_t distance, std::uint32_t index) {
-  return std::uint64_t{distance} << 32 | index;
-}
+inline std::uint64_t make_key(std::uint32_t distance, std::uint32_t index) { return std::uint64_t{distance} << 32 | index; }
 
 /// Most queries one call of nearest() takes; bounds the state the kernels hold on the stack.
 inline constexpr std::size_t kMaxQueriesPerCall = 64;
@@ -46,14 +44,13 @@ struct Kernels {
   void (*distances_at)(const Descriptor& query, const Descriptor* train, const std::uint32_t* index, std::size_t count,
                        std::uint16_t* distances);
   /// Adds all of `train` to top[0 .. num_queries); num_queries <= kMaxQueriesPerCall.
-  void (*nearest)(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train,
-                  TopTwo* top);
+  void (*nearest)(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train, TopTwo* top);
 };
 
 /// Loops over pairs with a distance function: the kernels that have nothing better, and the tails of those that have.
 template <typename Distance>
-inline void nearest_by_pairs(const Descriptor* queries, std::size_t num_queries, const Descriptor* train,
-                             std::size_t begin, std::size_t end, TopTwo* top, Distance distance) {
+inline void nearest_by_pairs(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t begin,
+                             std::size_t end, TopTwo* top, Distance distance) {
   for (std::size_t q = 0; q < num_queries; ++q)
     for (std::size_t i = begin; i < end; ++i)
       top[q].add(make_key(static_cast<std::uint32_t>(distance(queries[q], train[i])), static_cast<std::uint32_t>(i)));
@@ -82,7 +79,7 @@ const Kernels& kernels_of(HammingKernel kernel);
 const Kernels& best_kernels();
 
 /// Nearest and second nearest with both indices, for callers that care whom the second belongs to.
-void nearest_two(const Kernels& kernels, const Descriptor* queries, std::size_t num_queries, const Descriptor* train,
-                 std::size_t num_train, TopTwo* top);
+void nearest_two(const Kernels& kernels, const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train,
+                 TopTwo* top);
 
 }  // namespace camloc::hamming

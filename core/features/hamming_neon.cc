@@ -25,8 +25,7 @@ void distances_at_neon(const Descriptor& query, const Descriptor* train, const s
   for (std::size_t i = 0; i < count; ++i) distances[i] = static_cast<std::uint16_t>(distance_neon(query, train[index[i]]));
 }
 
-void nearest_neon(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train,
-                  TopTwo* top) {
+void nearest_neon(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train, TopTwo* top) {
   nearest_by_pairs(queries, num_queries, train, 0, num_train, top, distance_neon);
 }
 

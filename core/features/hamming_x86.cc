@@ -40,29 +40,25 @@ __attribute__((target("popcnt"))) inline int distance_popcnt(const Descriptor& a
                           _mm_popcnt_u64(a.bits[2] ^ b.bits[2]) + _mm_popcnt_u64(a.bits[3] ^ b.bits[3]));
 }
 
-__attribute__((target("popcnt"))) void distances_popcnt(const Descriptor& query, const Descriptor* train,
-                                                        std::size_t num_train, std::uint16_t* distances) {
+__attribute__((target("popcnt"))) void distances_popcnt(const Descriptor& query, const Descriptor* train, std::size_t num_train,
+                                                        std::uint16_t* distances) {
   for (std::size_t i = 0; i < num_train; ++i) distances[i] = static_cast<std::uint16_t>(distance_popcnt(query, train[i]));
 }
 
-__attribute__((target("popcnt"))) void distances_at_popcnt(const Descriptor& query, const Descriptor* train,
-                                                           const std::uint32_t* index, std::size_t count,
-                                                           std::uint16_t* distances) {
+__attribute__((target("popcnt"))) void distances_at_popcnt(const Descriptor& query, const Descriptor* train, const std::uint32_t* index,
+                                                           std::size_t count, std::uint16_t* distances) {
   const Descriptor q = query;  // stays in registers: `distances` might alias it
   for (std::size_t i = 0; i < count; ++i) distances[i] = static_cast<std::uint16_t>(distance_popcnt(q, train[index[i]]));
 }
 
-__attribute__((target("popcnt"))) void nearest_range_popcnt(const Descriptor* queries, std::size_t num_queries,
-                                                            const Descriptor* train, std::size_t begin, std::size_t end,
-                                                            TopTwo* top) {
+__attribute__((target("popcnt"))) void nearest_range_popcnt(const Descriptor* queries, std::size_t num_queries, const Descriptor* train,
+                                                            std::size_t begin, std::size_t end, TopTwo* top) {
   for (std::size_t q = 0; q < num_queries; ++q)
     for (std::size_t i = begin; i < end; ++i)
-      top[q].add(
-          make_key(static_cast<std::uint32_t>(distance_popcnt(queries[q], train[i])), static_cast<std::uint32_t>(i)));
+      top[q].add(make_key(static_cast<std::uint32_t>(distance_popcnt(queries[q], train[i])), static_cast<std::uint32_t>(i)));
 }
 
-void nearest_popcnt(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train,
-                    TopTwo* top) {
+void nearest_popcnt(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train, TopTwo* top) {
   nearest_range_popcnt(queries, num_queries, train, 0, num_train, top);
 }
 
@@ -93,8 +89,8 @@ void reduce(const LaneKeys& keys, std::size_t base, TopTwo* top) {
 using ChunkFunction = void (*)(const Descriptor* queries, const Transposed& chunk, std::size_t count, std::uint32_t position,
                                LaneKeys* keys);
 
-void nearest_in_chunks(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train,
-                       TopTwo* top, ChunkFunction chunk_function) {
+void nearest_in_chunks(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train, TopTwo* top,
+                       ChunkFunction chunk_function) {
   Transposed chunk;
   LaneKeys keys[kMaxQueriesPerCall];
   Descriptor padded[kQueriesPerLoad];
@@ -110,12 +106,10 @@ void nearest_in_chunks(const Descriptor* queries, std::size_t num_queries, const
       const std::size_t count = std::min(kChunk, segment_end - begin);
       const auto position = static_cast<std::uint32_t>(begin - base);
       transpose(train + begin, count, &chunk);
-      for (std::size_t q = 0; q < full_queries; q += kQueriesPerLoad)
-        chunk_function(queries + q, chunk, count, position, keys + q);
+      for (std::size_t q = 0; q < full_queries; q += kQueriesPerLoad) chunk_function(queries + q, chunk, count, position, keys + q);
       if (full_queries < num_queries) chunk_function(padded, chunk, count, position, padded_keys);
     }
-    for (std::size_t q = 0; q < num_queries; ++q)
-      reduce(q < full_queries ? keys[q] : padded_keys[q - full_queries], base, &top[q]);
+    for (std::size_t q = 0; q < num_queries; ++q) reduce(q < full_queries ? keys[q] : padded_keys[q - full_queries], base, &top[q]);
   }
   nearest_range_popcnt(queries, num_queries, train, whole, num_train, top);
 }
@@ -166,8 +160,7 @@ __attribute__((target("avx2"))) void chunk_avx2(const Descriptor* queries, const
   }
 }
 
-void nearest_avx2(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train,
-                  TopTwo* top) {
+void nearest_avx2(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train, TopTwo* top) {
   nearest_in_chunks(queries, num_queries, train, num_train, top, chunk_avx2);
 }
 
@@ -214,14 +207,12 @@ CAMLOC_AVX512 void chunk_avx512(const Descriptor* queries, const Transposed& chu
   }
 }
 
-CAMLOC_AVX512 void distances_avx512(const Descriptor& query, const Descriptor* train, std::size_t num_train,
-                                    std::uint16_t* distances) {
+CAMLOC_AVX512 void distances_avx512(const Descriptor& query, const Descriptor* train, std::size_t num_train, std::uint16_t* distances) {
   const __m512i q = _mm512_broadcast_i64x4(_mm256_load_si256(reinterpret_cast<const __m256i*>(&query)));
   std::size_t i = 0;
   for (; i + 8 <= num_train; i += 8) {
     __m512i count[4];
-    for (std::size_t k = 0; k < 4; ++k)
-      count[k] = _mm512_popcnt_epi64(_mm512_xor_si512(_mm512_loadu_si512(train + i + 2 * k), q));
+    for (std::size_t k = 0; k < 4; ++k) count[k] = _mm512_popcnt_epi64(_mm512_xor_si512(_mm512_loadu_si512(train + i + 2 * k), q));
     // Sum of the four words of each descriptor: neighbours first, then the 128-bit halves.
     const __m512i a = _mm512_add_epi64(_mm512_unpacklo_epi64(count[0], count[1]), _mm512_unpackhi_epi64(count[0], count[1]));
     const __m512i b = _mm512_add_epi64(_mm512_unpacklo_epi64(count[2], count[3]), _mm512_unpackhi_epi64(count[2], count[3]));
@@ -233,8 +224,7 @@ CAMLOC_AVX512 void distances_avx512(const Descriptor& query, const Descriptor* t
   for (; i < num_train; ++i) distances[i] = static_cast<std::uint16_t>(distance_popcnt(query, train[i]));
 }
 
-void nearest_avx512(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train,
-                    TopTwo* top) {
+void nearest_avx512(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train, TopTwo* top) {
   nearest_in_chunks(queries, num_queries, train, num_train, top, chunk_avx512);
 }
 

@@ -42,8 +42,7 @@ void resize_row(const std::uint8_t* src, const std::vector<ResizeTap>& taps, std
 }
 
 void mix_rows(const std::uint16_t* first, const std::uint16_t* second, std::uint32_t weight, int width, std::uint8_t* dst) {
-  for (int x = 0; x < width; ++x)
-    dst[x] = static_cast<std::uint8_t>((first[x] * (256 - weight) + second[x] * weight + 32768) >> 16);
+  for (int x = 0; x < width; ++x) dst[x] = static_cast<std::uint8_t>((first[x] * (256 - weight) + second[x] * weight + 32768) >> 16);
 }
 
 #if defined(__x86_64__)
@@ -92,8 +91,8 @@ __attribute__((target("avx2"), always_inline)) inline __m256i mix_sixteen(const 
 }
 
 /// Reads and writes up to 31 columns more than `width`; rows are padded.
-__attribute__((target("avx2"))) void mix_rows_avx2(const std::uint16_t* first, const std::uint16_t* second, std::uint32_t weight,
-                                                   int width, std::uint8_t* dst) {
+__attribute__((target("avx2"))) void mix_rows_avx2(const std::uint16_t* first, const std::uint16_t* second, std::uint32_t weight, int width,
+                                                   std::uint8_t* dst) {
   const __m256i weights = _mm256_set1_epi32(static_cast<int>(weight << 16 | (256 - weight)));
   for (int x = 0; x < width; x += 32) {
     const __m256i low = mix_sixteen(first + x, second + x, weights), high = mix_sixteen(first + x + 16, second + x + 16, weights);

@@ -33,7 +33,7 @@ struct ResizeTap {
 
 /// Sixteen neighbouring columns for a vector kernel: each half takes its pixels from 16 source pixels.
 struct alignas(32) ResizeBlock {
-  std::uint8_t shuffle[32] = {};    ///< byte 2 i, 2 i + 1: the two pixels of column i, counted from the half's offset
+  std::uint8_t shuffle[32] = {};  ///< byte 2 i, 2 i + 1: the two pixels of column i, counted from the half's offset
   std::uint16_t weight[16] = {};
   std::int32_t offset[2] = {};
 };
@@ -47,7 +47,7 @@ class ExactResize {
 
  private:
   std::vector<ResizeTap> columns_, rows_;
-  std::vector<ResizeBlock> blocks_;         ///< the columns again for the vector kernel; empty where it cannot be used
+  std::vector<ResizeBlock> blocks_;           ///< the columns again for the vector kernel; empty where it cannot be used
   std::vector<std::uint16_t> row_buffer_[2];  ///< horizontally resized source rows, 8 fractional bits
 };
 

@@ -148,8 +148,7 @@ Match GuidedMatcher::best_in_window() const {
   return match;
 }
 
-std::span<const Match> GuidedMatcher::match(const Features& features, const FeatureGrid& grid,
-                                            std::span<const ProjectedLandmark> landmarks,
+std::span<const Match> GuidedMatcher::match(const Features& features, const FeatureGrid& grid, std::span<const ProjectedLandmark> landmarks,
                                             std::span<const Descriptor> descriptors) {
   std::fill(best_of_feature_.begin(), best_of_feature_.end(), Match{});
   table_.assign(features, grid);

@@ -15,9 +15,9 @@
 namespace camloc {
 
 struct Match {
-  std::int32_t feature = -1;    ///< index into Features
-  std::int32_t landmark = -1;   ///< the caller's id
-  std::uint16_t distance = 0;   ///< Hamming distance
+  std::int32_t feature = -1;   ///< index into Features
+  std::int32_t landmark = -1;  ///< the caller's id
+  std::uint16_t distance = 0;  ///< Hamming distance
   /// Distance of the best rival: another landmark (candidates) or feature (guided); 257: none. The candidate matcher with its
   /// ratio test off also says 257 where the two best candidates belong to one landmark.
   std::uint16_t second = 257;
@@ -37,9 +37,7 @@ class FeatureGrid {
   /// Feature indices in neighbouring buckets of one row, first and last column included.
   [[nodiscard]] std::span<const std::int32_t> buckets(int first_column, int last_column, int row) const;
   /// All feature indices, bucket by bucket: what buckets() hands out are pieces of this.
-  [[nodiscard]] std::span<const std::int32_t> all() const {
-    return {feature_.data(), static_cast<std::size_t>(bucket_begin_.back())};
-  }
+  [[nodiscard]] std::span<const std::int32_t> all() const { return {feature_.data(), static_cast<std::size_t>(bucket_begin_.back())}; }
 
  private:
   [[nodiscard]] int bucket_of(const Keypoint& keypoint) const;
@@ -51,16 +49,16 @@ class FeatureGrid {
 /// A landmark where the predicted pose puts it in the image.
 struct ProjectedLandmark {
   std::int32_t landmark = -1;
-  float u = 0, v = 0;             ///< predicted pixel
-  float radius_px = 8;            ///< search window
-  std::uint8_t min_level = 0, max_level = 7;   ///< pyramid levels it may appear on
+  float u = 0, v = 0;                                       ///< predicted pixel
+  float radius_px = 8;                                      ///< search window
+  std::uint8_t min_level = 0, max_level = 7;                ///< pyramid levels it may appear on
   std::uint32_t first_descriptor = 0, num_descriptors = 1;  ///< range in the descriptors given to match()
 };
 
 struct GuidedMatcherOptions {
-  int max_distance = 64;      ///< of 256 bits
-  double max_ratio = 0.9;     ///< best / second best feature in the window on a nearby level; 1 = off
-  int max_matches = 2000;     ///< buffer size
+  int max_distance = 64;   ///< of 256 bits
+  double max_ratio = 0.9;  ///< best / second best feature in the window on a nearby level; 1 = off
+  int max_matches = 2000;  ///< buffer size
 };
 
 /// Best feature in the window of each projected landmark; a feature claimed by several landmarks goes to the closest
@@ -110,13 +108,13 @@ struct CandidateSet {
   std::size_t size = 0;
   std::vector<Descriptor> descriptors;
   std::vector<std::int32_t> landmarks;
-  std::vector<float> angles_rad;   ///< orientation of the landmark's feature where it was mapped
+  std::vector<float> angles_rad;  ///< orientation of the landmark's feature where it was mapped
 };
 
 struct CandidateMatcherOptions {
   int max_distance = 64;
-  double max_ratio = 1.0;             ///< best / best of another landmark; 1 = off
-  bool is_mutual = true;              ///< the feature must also be the landmark's best
+  double max_ratio = 1.0;                   ///< best / best of another landmark; 1 = off
+  bool is_mutual = true;                    ///< the feature must also be the landmark's best
   double max_rotation_deviation_rad = 0.5;  ///< from the dominant rotation between mapped and seen orientation; <= 0 = off
 };
 
@@ -139,9 +137,9 @@ class CandidateMatcher {
 
   CandidateMatcherOptions options_;
   std::vector<Match> matches_;
-  std::vector<std::uint32_t> candidate_;   ///< of each match
-  std::vector<double> rotations_rad_;      ///< of each match, from mapped to seen orientation
-  std::vector<std::uint16_t> distances_;   ///< of one descriptor to all features or all candidates
+  std::vector<std::uint32_t> candidate_;  ///< of each match
+  std::vector<double> rotations_rad_;     ///< of each match, from mapped to seen orientation
+  std::vector<std::uint16_t> distances_;  ///< of one descriptor to all features or all candidates
   // Hash table from landmark to its candidates: slot -> first candidate, candidate -> next of the same landmark.
   std::vector<std::int32_t> first_in_slot_, next_candidate_;
   std::vector<std::int32_t> best_feature_in_slot_;  ///< -2: not computed yet

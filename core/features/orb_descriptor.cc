@@ -153,7 +153,7 @@ constexpr PatternArrays kPattern = make_pattern_arrays();
 /// Offset in the image of each end of each test, turned. Coordinates are rounded half to even: adding 1.5 * 2^23 leaves the
 /// integer in the low bits.
 [[gnu::always_inline]] inline void turned_offsets(float c, float s, std::int32_t stride, std::int32_t* __restrict offsets) {
-  const float *__restrict x = kPattern.x, *__restrict y = kPattern.y;
+  const float* __restrict x = kPattern.x, * __restrict y = kPattern.y;
   constexpr float kMagic = 12582912.F;
   constexpr auto kMagicBits = std::bit_cast<std::int32_t>(kMagic);
   for (int i = 0; i < 512; ++i) {

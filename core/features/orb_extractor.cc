@@ -66,8 +66,9 @@ struct OrbExtractor::Impl {
     if (corners.empty()) return;
     blur_level(image);
     for (const Corner& corner : corners) {
-      Keypoint keypoint{pyramid.column_on_base(level, static_cast<float>(corner.x)), pyramid.row_on_base(level, static_cast<float>(corner.y)),
-                        0, static_cast<float>(corner.score), static_cast<std::uint8_t>(level)};
+      Keypoint keypoint{pyramid.column_on_base(level, static_cast<float>(corner.x)),
+                        pyramid.row_on_base(level, static_cast<float>(corner.y)), 0, static_cast<float>(corner.score),
+                        static_cast<std::uint8_t>(level)};
       features.descriptors.push_back(describe_at(image, corner.x, corner.y, &keypoint));
       features.keypoints.push_back(keypoint);
     }
@@ -103,8 +104,7 @@ struct OrbExtractor::Impl {
   Features features;
 };
 
-OrbExtractor::OrbExtractor(int width, int height, const OrbOptions& options)
-    : impl_(std::make_unique<Impl>(width, height, options)) {}
+OrbExtractor::OrbExtractor(int width, int height, const OrbOptions& options) : impl_(std::make_unique<Impl>(width, height, options)) {}
 OrbExtractor::~OrbExtractor() = default;
 OrbExtractor::OrbExtractor(OrbExtractor&&) noexcept = default;
 OrbExtractor& OrbExtractor::operator=(OrbExtractor&&) noexcept = default;

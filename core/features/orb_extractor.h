@@ -16,12 +16,12 @@
 namespace camloc {
 
 struct OrbOptions {
-  int num_features = 1000;       ///< at most; a bound, not a promise
+  int num_features = 1000;  ///< at most; a bound, not a promise
   int num_levels = 8;
-  float scale_factor = 1.2F;     ///< between levels
-  int fast_threshold = 20;       ///< grey levels; where a cell has no such corner, min_fast_threshold is tried
+  float scale_factor = 1.2F;  ///< between levels
+  int fast_threshold = 20;    ///< grey levels; where a cell has no such corner, min_fast_threshold is tried
   int min_fast_threshold = 7;
-  int cell_px = 32;              ///< side of a grid cell on each level
+  int cell_px = 32;  ///< side of a grid cell on each level
 };
 
 /// Not thread-safe. Allocates at construction and never again; work is bounded by image size and num_features.

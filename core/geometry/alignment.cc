@@ -151,8 +151,7 @@ LeaveOneOutResidual predicted_residual(const Alignment& alignment, const PointPa
   residual.error_m = pair.p_a - alignment.map(pair.p_b);
   Eigen::Matrix<double, 3, 6> jacobian;
   jacobian << Eigen::Matrix3d::Identity(), -skew(alignment.T_a_b.rotation * pair.p_b);
-  residual.covariance = jacobian * alignment.covariance * jacobian.transpose() +
-                        pair.sigma_m * pair.sigma_m * Eigen::Matrix3d::Identity();
+  residual.covariance = jacobian * alignment.covariance * jacobian.transpose() + pair.sigma_m * pair.sigma_m * Eigen::Matrix3d::Identity();
   residual.is_determined = alignment.rank == AlignmentRank::kFull;
   return residual;
 }

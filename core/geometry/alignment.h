@@ -30,16 +30,16 @@ enum class AlignmentRank : std::uint8_t {
 };
 
 struct Alignment {
-  Rigid3 T_a_b;             ///< p_a = scale * R_a_b * p_b + t; what the points leave open is turned as little as possible
-  double scale = 1;         ///< 1 in a rigid alignment
-  double scale_sigma = 0;   ///< standard deviation that `scale` has, or would have, when it is free
+  Rigid3 T_a_b;            ///< p_a = scale * R_a_b * p_b + t; what the points leave open is turned as little as possible
+  double scale = 1;        ///< 1 in a rigid alignment
+  double scale_sigma = 0;  ///< standard deviation that `scale` has, or would have, when it is free
   AlignmentRank rank = AlignmentRank::kNothing;
   Eigen::Vector3d free_axis = Eigen::Vector3d::Zero();  ///< kLine: unit vector along the line, axes of `a`
   /// Of pose_error() of T_a_b for a rigid alignment, from the sigmas alone; a turn that is not determined has a standard
   /// deviation of pi. In kNothing the position is as unknown: 1e6 m.
   Matrix6d covariance = Matrix6d::Zero();
-  double rms_m = 0;         ///< of the residuals' lengths
-  double chi_squared = 0;   ///< sum of the squared residuals over sigma
+  double rms_m = 0;            ///< of the residuals' lengths
+  double chi_squared = 0;      ///< sum of the squared residuals over sigma
   int degrees_of_freedom = 0;  ///< 3 a point less the parameters that the points determine; at least 0
 
   [[nodiscard]] Eigen::Vector3d map(const Eigen::Vector3d& p_b) const { return scale * (T_a_b.rotation * p_b) + T_a_b.translation; }

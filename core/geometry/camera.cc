@@ -131,9 +131,7 @@ Status Intrinsics::validate() const {
   return Status::ok();
 }
 
-Eigen::Vector2d Intrinsics::project(const Eigen::Vector3d& p_camera) const {
-  return distort(p_camera.head<2>() / p_camera.z());
-}
+Eigen::Vector2d Intrinsics::project(const Eigen::Vector3d& p_camera) const { return distort(p_camera.head<2>() / p_camera.z()); }
 
 Eigen::Vector2d Intrinsics::distort(const Eigen::Vector2d& normalized) const {
   Eigen::Vector2d d = normalized;

@@ -18,9 +18,9 @@
 namespace camloc {
 
 enum class LensModel : std::uint8_t {
-  kPinhole,        ///< no distortion
-  kBrownConrady,   ///< k1 k2 p1 p2 k3 (Brown, "Decentering distortion of lenses", 1966; OpenCV's order)
-  kEquidistant,    ///< k1 k2 k3 k4 (Kannala and Brandt, "A generic camera model and calibration method ...", 2006)
+  kPinhole,       ///< no distortion
+  kBrownConrady,  ///< k1 k2 p1 p2 k3 (Brown, "Decentering distortion of lenses", 1966; OpenCV's order)
+  kEquidistant,   ///< k1 k2 k3 k4 (Kannala and Brandt, "A generic camera model and calibration method ...", 2006)
 };
 
 /// Intrinsics of one camera together with the image size they belong to.
@@ -58,10 +58,10 @@ struct DepthNoise {
 struct RgbdCamera {
   std::string name;
   Intrinsics color;
-  Intrinsics depth;                ///< equals `color` where depth is registered
-  Rigid3 T_color_depth;            ///< p_color = T_color_depth * p_depth
-  bool is_depth_registered = true; ///< depth pixel (u, v) belongs to colour pixel (u, v)
-  double depth_unit_m = 0.001;     ///< metres per raw depth unit
+  Intrinsics depth;                 ///< equals `color` where depth is registered
+  Rigid3 T_color_depth;             ///< p_color = T_color_depth * p_depth
+  bool is_depth_registered = true;  ///< depth pixel (u, v) belongs to colour pixel (u, v)
+  double depth_unit_m = 0.001;      ///< metres per raw depth unit
   double min_depth_m = 0.3;
   double max_depth_m = 8.0;
   DepthNoise depth_noise;

@@ -13,11 +13,21 @@
 namespace camloc {
 
 Correspondences::Correspondences(std::size_t capacity)
-    : x(capacity), y(capacity), X(capacity), Y(capacity), Z(capacity), depth_m(capacity), sigma_px(capacity), rank(capacity),
-      feature(capacity), landmark(capacity), order_(capacity), scratch_(capacity) {}
+    : x(capacity),
+      y(capacity),
+      X(capacity),
+      Y(capacity),
+      Z(capacity),
+      depth_m(capacity),
+      sigma_px(capacity),
+      rank(capacity),
+      feature(capacity),
+      landmark(capacity),
+      order_(capacity),
+      scratch_(capacity) {}
 
-bool Correspondences::add(float x_normalized, float y_normalized, float x_map, float y_map, float z_map, float depth,
-                          float sigma, float match_rank, std::int32_t feature_index, std::int32_t landmark_index) {
+bool Correspondences::add(float x_normalized, float y_normalized, float x_map, float y_map, float z_map, float depth, float sigma,
+                          float match_rank, std::int32_t feature_index, std::int32_t landmark_index) {
   if (size_ == capacity()) return false;
   assert(!std::isnan(match_rank));
   const std::size_t i = size_++;

@@ -14,8 +14,8 @@ struct Correspondences {
   explicit Correspondences(std::size_t capacity = 0);
 
   /// Image coordinates are normalized and undistorted; the point is in `map`, metres. Returns false when full.
-  bool add(float x_normalized, float y_normalized, float x_map, float y_map, float z_map, float depth_m,
-           float sigma_px, float rank, std::int32_t feature, std::int32_t landmark);
+  bool add(float x_normalized, float y_normalized, float x_map, float y_map, float z_map, float depth_m, float sigma_px, float rank,
+           std::int32_t feature, std::int32_t landmark);
   void clear() { size_ = 0; }
   /// Forgets all pairs beyond the first `count`.
   void truncate(std::size_t count) { size_ = count < size_ ? count : size_; }
@@ -24,11 +24,11 @@ struct Correspondences {
   /// Orders all pairs by rank, best (smallest) first; stable, without allocation.
   void sort_by_rank();
 
-  std::vector<float> x, y;           ///< normalized image coordinates
-  std::vector<float> X, Y, Z;        ///< landmark in `map`, metres
-  std::vector<float> depth_m;        ///< measured depth along the optical axis, 0 = none
-  std::vector<float> sigma_px;       ///< standard deviation of the feature position, pixels of level 0
-  std::vector<float> rank;           ///< match quality, smaller is better (descriptor distance)
+  std::vector<float> x, y;                      ///< normalized image coordinates
+  std::vector<float> X, Y, Z;                   ///< landmark in `map`, metres
+  std::vector<float> depth_m;                   ///< measured depth along the optical axis, 0 = none
+  std::vector<float> sigma_px;                  ///< standard deviation of the feature position, pixels of level 0
+  std::vector<float> rank;                      ///< match quality, smaller is better (descriptor distance)
   std::vector<std::int32_t> feature, landmark;  ///< indices of the caller
 
  private:

@@ -10,19 +10,18 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "core/geometry/gravity.h"
-
 #include "core/base/order_statistics.h"
+#include "core/geometry/gravity.h"
 
 namespace camloc {
 namespace {
 
-constexpr double kCellM = 0.5;           ///< errors of points closer than this are one error
+constexpr double kCellM = 0.5;  ///< errors of points closer than this are one error
 constexpr double kNearM = 0.3;
 constexpr double kMinCellShare = 0.4;
 constexpr std::uint32_t kMinCellPoints = 5;
-constexpr double kMinSigmaRad = 0.003;   ///< floors are level to this
-constexpr double kBelowM = 0.10;         ///< clearly below a plane
+constexpr double kMinSigmaRad = 0.003;  ///< floors are level to this
+constexpr double kBelowM = 0.10;        ///< clearly below a plane
 constexpr int kMaxLowerPlanes = 4;
 
 using Points = std::vector<Eigen::Vector3d>;
@@ -72,7 +71,8 @@ Plane sample_planes(const Points& points, const Eigen::Vector3d& up, const Floor
   const double min_cosine = std::cos(options.max_tilt_rad);
   std::mt19937 random(1);
   for (int i = 0; i < options.num_samples; ++i) {
-    const Eigen::Vector3d &a = points[random() % points.size()], &b = points[random() % points.size()], &c = points[random() % points.size()];
+    const Eigen::Vector3d &a = points[random() % points.size()], &b = points[random() % points.size()],
+                          &c = points[random() % points.size()];
     Plane plane;
     plane.normal = (b - a).cross(c - a);
     const double length = plane.normal.norm();
@@ -90,8 +90,8 @@ Plane sample_planes(const Points& points, const Eigen::Vector3d& up, const Floor
 struct Fit {
   Plane plane;
   double rms_m = 0;
-  double spread_m = 0;      ///< the smaller standard deviation of its cells within the plane
-  double area_m2 = 0;       ///< of its cells
+  double spread_m = 0;  ///< the smaller standard deviation of its cells within the plane
+  double area_m2 = 0;   ///< of its cells
   double sigma_rad = 0;
 };
 
@@ -228,10 +228,12 @@ Result<GravityEstimate> gravity_from_floor(std::span<const Eigen::Vector3d> poin
   if (estimate.inlier_share < options.min_inlier_share) {
     return no_floor("the best level plane holds only " + percent(estimate.inlier_share) + " of the points below the cameras");
   }
-  if (fit.spread_m < options.min_spread_m || fit.area_m2 < options.min_area_m2) return no_floor("the best level plane is only a strip or a small patch");
+  if (fit.spread_m < options.min_spread_m || fit.area_m2 < options.min_area_m2)
+    return no_floor("the best level plane is only a strip or a small patch");
   if (fit.plane.normal.dot(up) < std::cos(options.max_tilt_rad)) return no_floor("the best plane is not level");
   if (estimate.camera_height_m < options.min_height_m) return no_floor("the best level plane is not below the cameras");
-  const auto num_below = static_cast<double>(std::count_if(points.begin(), points.end(), [&](const Eigen::Vector3d& p) { return fit.plane.height(p) < -kBelowM; }));
+  const auto num_below = static_cast<double>(
+      std::count_if(points.begin(), points.end(), [&](const Eigen::Vector3d& p) { return fit.plane.height(p) < -kBelowM; }));
   if (num_below > 0.5 * static_cast<double>(fit.plane.num_inliers)) return no_floor("many points lie below the best level plane");
   return estimate;
 }

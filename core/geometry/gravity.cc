@@ -146,7 +146,8 @@ Result<Eigen::Matrix3d> find_accelerometer_axes(std::span<const OrientedReading>
     }
   }
   if (!best || least > options.max_scatter_rad) {
-    return {ErrorCode::kInvalid, "under no signs of its axes do the accelerometer's readings agree with the poses; is it of this recording?"};
+    return {ErrorCode::kInvalid,
+            "under no signs of its axes do the accelerometer's readings agree with the poses; is it of this recording?"};
   }
   if (second < kMinScatterRatio * least + 0.01) {
     return {ErrorCode::kInvalid, "the signs of the accelerometer's axes cannot be told: the camera was not tilted enough; name them"};

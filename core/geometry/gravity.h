@@ -22,7 +22,7 @@ enum class GravitySource : std::uint8_t { kAccelerometer, kFloor };
 
 struct GravityEstimate {
   Eigen::Vector3d up_map = Eigen::Vector3d::UnitZ();  ///< unit vector, axes of `map`
-  double sigma_rad = 0;         ///< standard deviation of its tilt about each horizontal axis
+  double sigma_rad = 0;                               ///< standard deviation of its tilt about each horizontal axis
   GravitySource source = GravitySource::kFloor;
   std::size_t num_samples = 0;  ///< readings, or points below the cameras
   double inlier_share = 0;      ///< of them, that agree
@@ -49,9 +49,9 @@ struct OrientedReading {
 
 struct AccelerometerOptions {
   Eigen::Matrix3d R_camera_accelerometer = kinect_R_camera_accelerometer();
-  double max_norm_error = 1.5;        ///< m/s^2 from standard gravity: a reading while the camera is being pushed says nothing
-  double max_scatter_rad = 0.17;      ///< 10 degrees; above this the axes, the poses or the clock are wrong
-  double bias_sigma_rad = 0.0175;     ///< 1 degree, what the sensor itself is good for
+  double max_norm_error = 1.5;     ///< m/s^2 from standard gravity: a reading while the camera is being pushed says nothing
+  double max_scatter_rad = 0.17;   ///< 10 degrees; above this the axes, the poses or the clock are wrong
+  double bias_sigma_rad = 0.0175;  ///< 1 degree, what the sensor itself is good for
   std::size_t min_readings = 20;
 };
 
@@ -63,13 +63,14 @@ struct AccelerometerOptions {
 /// Of the eight mappings that only turn axes over, the one under which the readings agree best, given that up is within 60
 /// degrees of `rough_up_map`: for devices whose axes nobody wrote down. kInvalid where two of them do about equally well,
 /// because the camera was never tilted in that direction.
-[[nodiscard]] Result<Eigen::Matrix3d> find_accelerometer_axes(std::span<const OrientedReading> readings, const Eigen::Vector3d& rough_up_map,
+[[nodiscard]] Result<Eigen::Matrix3d> find_accelerometer_axes(std::span<const OrientedReading> readings,
+                                                              const Eigen::Vector3d& rough_up_map,
                                                               const AccelerometerOptions& options = {});
 
 // ---- floor
 
 struct FloorOptions {
-  double max_tilt_rad = 0.61;          ///< 35 degrees between the floor's normal and the rough up
+  double max_tilt_rad = 0.61;  ///< 35 degrees between the floor's normal and the rough up
   double inlier_distance_m = 0.03;
   double min_height_m = 0.25;          ///< of the cameras above the floor
   double min_inlier_share = 0.10;      ///< of the points that are below the cameras
@@ -77,7 +78,7 @@ struct FloorOptions {
   double min_area_m2 = 2;              ///< in squares of 0.5 m that hold floor points and little just above or below
   double min_relative_support = 0.25;  ///< a lower plane is the floor when it has this share of the points of a higher one
   int num_samples = 3000;
-  std::size_t max_points = 60'000;     ///< taken evenly from all
+  std::size_t max_points = 60'000;  ///< taken evenly from all
 };
 
 /// The lowest plane with much support below the cameras, refined by least squares. Seeded: the same points give the same

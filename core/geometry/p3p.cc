@@ -201,8 +201,8 @@ P3pSolutions solve_p3p(const std::array<Vector3d, 3>& bearings_camera, const std
   const bool is_reversed = std::abs(p[0]) < std::abs(p[3]);
   const double lead = is_reversed ? p[3] : p[0];
   if (lead == 0.0) return solutions;
-  const double g = is_reversed ? real_root_of_cubic(p[2] / lead, p[1] / lead, p[0] / lead)
-                               : real_root_of_cubic(p[1] / lead, p[2] / lead, p[3] / lead);
+  const double g =
+      is_reversed ? real_root_of_cubic(p[2] / lead, p[1] / lead, p[0] / lead) : real_root_of_cubic(p[1] / lead, p[2] / lead, p[3] / lead);
   const Matrix3d degenerate = is_reversed ? Matrix3d(g * C + D) : Matrix3d(C + g * D);
   const bool is_mostly_D = is_reversed ? std::abs(g) < 1.0 : std::abs(g) > 1.0;
 

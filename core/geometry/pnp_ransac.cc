@@ -86,8 +86,7 @@ bool is_consistent_with_depth(const PoseScorer& pairs, const Sample& sample, flo
   const auto [i, j, k] = sample;
   if (!(pairs.has_depth(i) & pairs.has_depth(j) & pairs.has_depth(k))) return true;
   // All three at once: which one fails cannot be predicted.
-  return pairs.is_distance_consistent(i, j, max_relative_depth_error) &
-         pairs.is_distance_consistent(j, k, max_relative_depth_error) &
+  return pairs.is_distance_consistent(i, j, max_relative_depth_error) & pairs.is_distance_consistent(j, k, max_relative_depth_error) &
          pairs.is_distance_consistent(k, i, max_relative_depth_error);
 }
 

@@ -17,18 +17,18 @@
 namespace camloc {
 
 struct PnpRansacOptions {
-  int iterations = 600;             ///< P3P samples, always all of them: the work does not depend on the data
-  double max_error_px = 5.0;        ///< inlier threshold
+  int iterations = 600;                    ///< P3P samples, always all of them: the work does not depend on the data
+  double max_error_px = 5.0;               ///< inlier threshold
   double max_relative_depth_error = 0.15;  ///< a pair with measured depth is an outlier when |z - d| > this * d; 0 = off
-  int local_optimizations = 12;     ///< at most this many improvements are polished
-  int max_pairs = 1000;             ///< buffers are sized for this many pairs
+  int local_optimizations = 12;            ///< at most this many improvements are polished
+  int max_pairs = 1000;                    ///< buffers are sized for this many pairs
 };
 
 struct PnpRansacResult {
   bool is_found = false;
   Rigid3 T_map_camera;
   int num_inliers = 0;
-  double cost = 0;                  ///< sum of truncated squared errors, px^2, over all pairs
+  double cost = 0;  ///< sum of truncated squared errors, px^2, over all pairs
 };
 
 /// Not thread-safe; allocates at construction only.

@@ -16,11 +16,11 @@
 namespace camloc {
 namespace {
 
-constexpr double kCauchyReach = 5.0;          // the Cauchy pass sees pairs within this many times max_error_px
-constexpr double kCauchyReachFocal = 20.0;    // a wrong focal length moves the border of the image by tens of pixels
-constexpr double kCauchyDepthReach = 20.0;    // sigmas; beyond, a depth adds a constant
+constexpr double kCauchyReach = 5.0;        // the Cauchy pass sees pairs within this many times max_error_px
+constexpr double kCauchyReachFocal = 20.0;  // a wrong focal length moves the border of the image by tens of pixels
+constexpr double kCauchyDepthReach = 20.0;  // sigmas; beyond, a depth adds a constant
 constexpr double kMinFocalScale = 0.3, kMaxFocalScale = 3.0;
-constexpr double kSettled = 1e-7;             // share of the cost below which a step ends a pass
+constexpr double kSettled = 1e-7;  // share of the cost below which a step ends a pass
 constexpr std::size_t kMinInliers = 4;
 
 struct State {
@@ -32,11 +32,11 @@ struct State {
 struct Residual {
   bool is_in_front = false;
   bool has_depth = false;
-  double u = 0, v = 0, z = 0;    ///< predicted: normalized coordinates and depth
-  double du_px = 0, dv_px = 0;   ///< predicted minus measured
+  double u = 0, v = 0, z = 0;   ///< predicted: normalized coordinates and depth
+  double du_px = 0, dv_px = 0;  ///< predicted minus measured
   double error_squared_px = 0;
   double sigma_px = 1;
-  double depth_sigmas = 0;       ///< predicted minus measured, in sigmas
+  double depth_sigmas = 0;  ///< predicted minus measured, in sigmas
   double depth_sigma_m = 1;
 };
 

@@ -26,17 +26,18 @@ struct PoseRefinementOptions {
 };
 
 struct PoseRefinementResult {
-  bool is_converged = false;       ///< enough pairs, finite, positive definite
+  bool is_converged = false;  ///< enough pairs, finite, positive definite
   Rigid3 T_map_camera;
-  Matrix6d covariance = Matrix6d::Identity();  ///< of pose_error(): metres then radians, axes of `map`; scaled by the residuals, never below the prior noise
-  int num_inliers = 0;             ///< pairs within max_error_px at the end
-  int num_depth_inliers = 0;       ///< of those with depth: residual within max_depth_error_sigmas
-  int num_with_depth = 0;          ///< inliers that carry a measured depth
-  double rms_px = 0;               ///< of the inliers
-  double median_px = 0;            ///< of the inliers
-  double rms_depth_sigmas = 0;     ///< of the depth inliers
+  Matrix6d covariance =
+      Matrix6d::Identity();   ///< of pose_error(): metres then radians, axes of `map`; scaled by the residuals, never below the prior noise
+  int num_inliers = 0;        ///< pairs within max_error_px at the end
+  int num_depth_inliers = 0;  ///< of those with depth: residual within max_depth_error_sigmas
+  int num_with_depth = 0;     ///< inliers that carry a measured depth
+  double rms_px = 0;          ///< of the inliers
+  double median_px = 0;       ///< of the inliers
+  double rms_depth_sigmas = 0;           ///< of the depth inliers
   double mean_relative_depth_error = 0;  ///< mean of (measured - predicted) / predicted over inliers with depth: signed
-  double focal_scale = 1.0;        ///< true focal length / assumed one
+  double focal_scale = 1.0;              ///< true focal length / assumed one
   double focal_scale_sigma = 0.0;
 };
 

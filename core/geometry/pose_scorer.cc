@@ -115,8 +115,8 @@ void PoseScorer::set_pairs(const Correspondences& pairs, std::size_t count, doub
 
 float PoseScorer::cost(const ScoredPose& pose, float limit) const {
   static const CostFunction function = best_cost_function();
-  const KernelInput input{x_.data(), y_.data(), X_.data(), Y_.data(), Z_.data(), min_z_.data(), max_z_.data(),
-                          padded(size_), squared_focal_, max_squared_error_};
+  const KernelInput input{x_.data(),     y_.data(),     X_.data(),     Y_.data(),      Z_.data(),
+                          min_z_.data(), max_z_.data(), padded(size_), squared_focal_, max_squared_error_};
   return function(input, pose, limit);
 }
 

@@ -27,8 +27,7 @@ class PoseScorer {
   explicit PoseScorer(std::size_t max_pairs);
 
   /// Takes over the first `count` pairs. `max_relative_depth_error` 0 ignores measured depth.
-  void set_pairs(const Correspondences& pairs, std::size_t count, double focal_px, double max_error_px,
-                 double max_relative_depth_error);
+  void set_pairs(const Correspondences& pairs, std::size_t count, double focal_px, double max_error_px, double max_relative_depth_error);
 
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] const Eigen::Vector3d& centre() const { return centre_; }

@@ -77,16 +77,14 @@ CAMLOC_INLINE void load_tail(const KernelInput& in, std::size_t i, std::size_t c
   for (std::size_t lane = 0; lane < kLanes; ++lane) pairs->is_real[lane] = lane < count ? -1 : 0;
 }
 
-CAMLOC_INLINE void add_focal_terms(const Doubles& u, const Doubles& v, const Doubles& inverse_z, const Doubles& weight,
-                                   KernelSums* sums) {
+CAMLOC_INLINE void add_focal_terms(const Doubles& u, const Doubles& v, const Doubles& inverse_z, const Doubles& weight, KernelSums* sums) {
   const Doubles d = u * u + v * v, r = 1.0 + d;
   sums->ad += weight * inverse_z * d;
   sums->ur += weight * u * r;
   sums->vr += weight * v * r;
 }
 
-CAMLOC_INLINE void add_depth_rows(const Doubles& uz, const Doubles& vz, const Doubles& dz, const Doubles& weight,
-                                  KernelSums* sums) {
+CAMLOC_INLINE void add_depth_rows(const Doubles& uz, const Doubles& vz, const Doubles& dz, const Doubles& weight, KernelSums* sums) {
   const Doubles weighted_dz = weight * dz;
   sums->d22 += weight;
   sums->d23 += weight * vz;
@@ -219,8 +217,10 @@ CAMLOC_INLINE void sum_up(const KernelInput& in, NormalEquations<N>* equations) 
 
 template <int N>
 CAMLOC_INLINE void sum_up_any(const KernelInput& in, NormalEquations<N>* equations) {
-  if (in.model.kernel == RobustKernel::kCauchy) sum_up<N, RobustKernel::kCauchy>(in, equations);
-  else sum_up<N, RobustKernel::kTruncated>(in, equations);
+  if (in.model.kernel == RobustKernel::kCauchy)
+    sum_up<N, RobustKernel::kCauchy>(in, equations);
+  else
+    sum_up<N, RobustKernel::kTruncated>(in, equations);
 }
 
 template <int N>
@@ -252,8 +252,18 @@ template <int N>
 NormalEquations<N> normal_equations(const Correspondences& pairs, const RefinementModel& model, const Rigid3& T_map_camera,
                                     double focal_scale) {
   static const SumFunction<N> function = best_sum_function<N>();
-  KernelInput in{pairs.x.data(), pairs.y.data(), pairs.X.data(), pairs.Y.data(), pairs.Z.data(), pairs.depth_m.data(),
-                 pairs.sigma_px.data(), pairs.size(), {}, {}, focal_scale, model};
+  KernelInput in{pairs.x.data(),
+                 pairs.y.data(),
+                 pairs.X.data(),
+                 pairs.Y.data(),
+                 pairs.Z.data(),
+                 pairs.depth_m.data(),
+                 pairs.sigma_px.data(),
+                 pairs.size(),
+                 {},
+                 {},
+                 focal_scale,
+                 model};
   const Eigen::Matrix3d R_camera_map = T_map_camera.rotation.conjugate().toRotationMatrix();
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) in.R[3 * row + column] = R_camera_map(row, column);

@@ -21,9 +21,9 @@ struct RefinementModel {
   DepthNoise depth_noise;
   bool use_depth = true;
   RobustKernel kernel = RobustKernel::kCauchy;
-  double cauchy_scale = 2;        ///< of the normalized residual
-  double reach_px = 25;           ///< of a reprojection error
-  double reach_depth_sigmas = 20; ///< of a depth error
+  double cauchy_scale = 2;         ///< of the normalized residual
+  double reach_px = 25;            ///< of a reprojection error
+  double reach_depth_sigmas = 20;  ///< of a depth error
 };
 
 /// Landmarks nearer than this, or behind the camera, take no part.
@@ -41,8 +41,8 @@ struct NormalEquations {
 /// A pair counts where its landmark lies in front and its reprojection error is in reach; its depth counts where that is so
 /// and the depth error is in reach, too. Every instruction set gives the same bits.
 template <int N>
-[[nodiscard]] NormalEquations<N> normal_equations(const Correspondences& pairs, const RefinementModel& model,
-                                                  const Rigid3& T_map_camera, double focal_scale);
+[[nodiscard]] NormalEquations<N> normal_equations(const Correspondences& pairs, const RefinementModel& model, const Rigid3& T_map_camera,
+                                                  double focal_scale);
 
 extern template NormalEquations<6> normal_equations<6>(const Correspondences&, const RefinementModel&, const Rigid3&, double);
 extern template NormalEquations<7> normal_equations<7>(const Correspondences&, const RefinementModel&, const Rigid3&, double);

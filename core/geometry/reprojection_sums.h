@@ -16,7 +16,7 @@ namespace camloc {
 /// T is double, or a vector of doubles with one point in each lane.
 template <typename T>
 struct ReprojectionSums {
-  T aa{}, aau{}, aav{}, aad{};                ///< a^2 times 1, u, v and d = uu + vv
+  T aa{}, aau{}, aav{}, aad{};                    ///< a^2 times 1, u, v and d = uu + vv
   T auv{}, ap{}, aq{}, au{}, av{}, aur{}, avr{};  ///< a times uv, p = 1 + uu, q = 1 + vv, u, v, u r, v r
   T h33{}, h34{}, h44{}, u{}, v{}, d{};
   T g0{}, g1{}, g2{}, g3{}, g4{}, g5{};
@@ -61,11 +61,11 @@ struct ReprojectionSums {
 
 [[nodiscard]] inline Matrix6d hessian_of(const ReprojectionSums<double>& s) {
   Matrix6d hessian;
-  hessian << s.aa, 0, -s.aau, -s.auv, s.ap, -s.av,    //
-      0, s.aa, -s.aav, -s.aq, s.auv, s.au,            //
-      -s.aau, -s.aav, s.aad, s.avr, -s.aur, 0,        //
-      -s.auv, -s.aq, s.avr, s.h33, s.h34, -s.u,       //
-      s.ap, s.auv, -s.aur, s.h34, s.h44, -s.v,        //
+  hessian << s.aa, 0, -s.aau, -s.auv, s.ap, -s.av,  //
+      0, s.aa, -s.aav, -s.aq, s.auv, s.au,          //
+      -s.aau, -s.aav, s.aad, s.avr, -s.aur, 0,      //
+      -s.auv, -s.aq, s.avr, s.h33, s.h34, -s.u,     //
+      s.ap, s.auv, -s.aur, s.h34, s.h44, -s.v,      //
       -s.av, s.au, 0, -s.u, -s.v, s.d;
   return hessian;
 }

@@ -57,9 +57,7 @@ Eigen::Quaterniond nearest_rotation(const Eigen::Matrix3d& almost_rotation) {
   return Eigen::Quaterniond(rotation).normalized();
 }
 
-double rotation_distance_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
-  return log_so3(a.conjugate() * b).norm();
-}
+double rotation_distance_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) { return log_so3(a.conjugate() * b).norm(); }
 
 Vector6d pose_error(const Rigid3& T_map_camera_true, const Rigid3& T_map_camera_estimate) {
   Vector6d error;
@@ -76,8 +74,7 @@ Matrix6d rotate_covariance(const Eigen::Quaterniond& R_a_b, const Matrix6d& cova
 
 Rigid3 interpolate(const Rigid3& from, const Rigid3& to, double fraction) {
   const Eigen::Vector3d turn = log_so3(to.rotation * from.rotation.conjugate());
-  return {(exp_so3(fraction * turn) * from.rotation).normalized(),
-          from.translation + fraction * (to.translation - from.translation)};
+  return {(exp_so3(fraction * turn) * from.rotation).normalized(), from.translation + fraction * (to.translation - from.translation)};
 }
 
 }  // namespace camloc

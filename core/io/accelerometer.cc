@@ -53,7 +53,8 @@ Status fix_unit(const std::string& file_name, std::vector<AccelerometerSample>* 
   }
   char text[32];
   std::snprintf(text, sizeof text, "%.3g", length);
-  return {ErrorCode::kInvalid, file_name + ": readings have the typical length " + text + "; expected 9.8 (m/s^2) or 1 (g): convert the file"};
+  return {ErrorCode::kInvalid,
+          file_name + ": readings have the typical length " + text + "; expected 9.8 (m/s^2) or 1 (g): convert the file"};
 }
 
 }  // namespace
@@ -78,7 +79,8 @@ Result<std::vector<AccelerometerSample>> read_accelerometer(const std::string& p
   return text ? parse_accelerometer(*text, path) : Result<std::vector<AccelerometerSample>>(text.status());
 }
 
-std::vector<OrientedReading> with_orientations(const std::vector<AccelerometerSample>& samples, const std::vector<StampedPose>& trajectory) {
+std::vector<OrientedReading> with_orientations(const std::vector<AccelerometerSample>& samples,
+                                               const std::vector<StampedPose>& trajectory) {
   std::vector<OrientedReading> readings;
   for (const AccelerometerSample& sample : samples) {
     const std::optional<Rigid3> T_map_camera = pose_at(trajectory, sample.stamp_ns);

@@ -140,7 +140,8 @@ void read_depth(TableReader* reader, RgbdCamera* camera) {
   camera->is_depth_registered = is_registered;
   if (is_registered) {
     for (const char* key : {"width", "height", "fx", "fy", "cx", "cy", "lens", "distortion"}) {
-      if (reader->has(key)) reader->fail(reader->line_of(key), std::string(key) + ": registered depth has the colour camera's intrinsics; leave it out");
+      if (reader->has(key))
+        reader->fail(reader->line_of(key), std::string(key) + ": registered depth has the colour camera's intrinsics; leave it out");
     }
   } else {
     read_intrinsics(reader, &camera->depth);
@@ -177,9 +178,7 @@ void read_poses(TableReader* reader, RgbdCamera* camera) {
 
 Result<RgbdCamera> parse_camera_toml(const std::string& text, const std::string& name) {
   const toml::parse_result parsed = toml::parse(text, name);
-  if (!parsed) {
-    return line_error(name, static_cast<int>(parsed.error().source().begin.line), std::string(parsed.error().description()));
-  }
+  if (!parsed) { return line_error(name, static_cast<int>(parsed.error().source().begin.line), std::string(parsed.error().description())); }
   const toml::table& file = parsed.table();
   Status status;
   RgbdCamera camera;
@@ -197,13 +196,19 @@ Result<RgbdCamera> parse_camera_toml(const std::string& text, const std::string&
     TableReader reader(name, *node->as_table(), key, &status);
     read(&reader);
   };
-  section("color", [&](TableReader* reader) {
-    reader->allow({"width", "height", "fx", "fy", "cx", "cy", "lens", "distortion"});
-    read_intrinsics(reader, &camera.color);
-  }, true);
-  section("depth", [&](TableReader* reader) { read_depth(reader, &camera); }, false);
-  section("extrinsics", [&](TableReader* reader) { read_extrinsics(reader, &camera.T_color_depth); }, !camera.is_depth_registered);
-  section("poses", [&](TableReader* reader) { read_poses(reader, &camera); }, false);
+  section(
+      "color",
+      [&](TableReader* reader) {
+        reader->allow({"width", "height", "fx", "fy", "cx", "cy", "lens", "distortion"});
+        read_intrinsics(reader, &camera.color);
+      },
+      true);
+  section(
+      "depth", [&](TableReader* reader) { read_depth(reader, &camera); }, false);
+  section(
+      "extrinsics", [&](TableReader* reader) { read_extrinsics(reader, &camera.T_color_depth); }, !camera.is_depth_registered);
+  section(
+      "poses", [&](TableReader* reader) { read_poses(reader, &camera); }, false);
   if (!status) return status;
   if (camera.is_depth_registered) camera.depth = camera.color;
   return camera;

@@ -58,15 +58,14 @@ std::vector<double> numbers(const YAML::Node& node, const char* key) {
 }
 
 /// A plain list, or OpenCV's and ROS's {rows, cols, data}.
-std::vector<double> matrix(const YAML::Node& node, const char* key) {
-  return numbers(node.IsMap() ? need(node, "data") : node, key);
-}
+std::vector<double> matrix(const YAML::Node& node, const char* key) { return numbers(node.IsMap() ? need(node, "data") : node, key); }
 
 void set_distortion(const YAML::Node& node, LensModel lens, const std::vector<double>& values, Intrinsics* k) {
   const std::size_t most = lens == LensModel::kEquidistant ? 4 : 5;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (i < most) k->distortion[i] = values[i];
-    if (i >= most && values[i] != 0) fail(node, "distortion: " + std::to_string(values.size()) + " coefficients; at most " + std::to_string(most) + " are read");
+    if (i >= most && values[i] != 0)
+      fail(node, "distortion: " + std::to_string(values.size()) + " coefficients; at most " + std::to_string(most) + " are read");
   }
   const bool has_any = std::any_of(k->distortion.begin(), k->distortion.end(), [](double value) { return value != 0; });
   // Equidistant without coefficients is still not a pinhole.
@@ -74,7 +73,8 @@ void set_distortion(const YAML::Node& node, LensModel lens, const std::vector<do
 }
 
 std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : static_cast<char>(c); });
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : static_cast<char>(c); });
   return text;
 }
 
@@ -121,7 +121,8 @@ YAML::Node first_of(const YAML::Node& parent, std::initializer_list<const char*>
 void read_camera_info(const YAML::Node& root, RgbdCamera* camera) {
   const YAML::Node matrix_node = first_of(root, {"camera_matrix", "K", "k"});
   const std::vector<double> m = matrix(matrix_node, "camera_matrix");
-  if (m.size() != 9 || m[1] != 0 || m[3] != 0 || m[6] != 0 || m[7] != 0 || m[8] != 1) fail(matrix_node, "camera_matrix: expected fx 0 cx 0 fy cy 0 0 1");
+  if (m.size() != 9 || m[1] != 0 || m[3] != 0 || m[6] != 0 || m[7] != 0 || m[8] != 1)
+    fail(matrix_node, "camera_matrix: expected fx 0 cx 0 fy cy 0 0 1");
   Intrinsics* k = &camera->color;
   k->fx = m[0], k->cx = m[2], k->fy = m[4], k->cy = m[5];
   k->width = pixels(first_of(root, {"image_width", "width"}), "image_width");
@@ -191,9 +192,7 @@ Result<RgbdCamera> parse_camera_yaml(const std::string& text, const std::string&
     return bad.line > 0 ? line_error(name, bad.line, bad.what) : Status(ErrorCode::kInvalid, name + ": " + bad.what);
   } catch (const YAML::Exception& error) {
     return line_error(name, std::max(error.mark.line + 1, 1), error.msg);
-  } catch (const std::exception& error) {
-    return Status(ErrorCode::kInvalid, name + ": " + error.what());
-  }
+  } catch (const std::exception& error) { return Status(ErrorCode::kInvalid, name + ": " + error.what()); }
 }
 
 }  // namespace camloc

@@ -13,6 +13,7 @@
 namespace camloc {
 
 /// Ascending indices below `num_frames` that `include` (empty = all) names and `exclude` (empty = none) does not.
-[[nodiscard]] Result<std::vector<std::size_t>> select_frames(const std::string& include, const std::string& exclude, std::size_t num_frames);
+[[nodiscard]] Result<std::vector<std::size_t>> select_frames(const std::string& include, const std::string& exclude,
+                                                             std::size_t num_frames);
 
 }  // namespace camloc

@@ -52,7 +52,8 @@ Status decode_gray(std::span<const std::uint8_t> bytes, const std::string& name,
 
 Status decode_depth(std::span<const std::uint8_t> bytes, const std::string& name, Image<std::uint16_t>* image) {
   if (starts_with(bytes, kPngMagic)) return decode_png_depth(bytes, name, image);
-  if (starts_with(bytes, kJpegMagic)) return {ErrorCode::kUnsupported, name + ": a JPEG image cannot hold depth; expected a 16-bit grey PNG"};
+  if (starts_with(bytes, kJpegMagic))
+    return {ErrorCode::kUnsupported, name + ": a JPEG image cannot hold depth; expected a 16-bit grey PNG"};
   return unknown_kind(bytes, name);
 }
 

@@ -91,8 +91,8 @@ struct PngEncoder {
     if (info == nullptr) return false;
     png_set_write_fn(png, &sink, on_png_write, on_png_flush);
     set_compression(png, layout);
-    png_set_IHDR(png, info, static_cast<png_uint_32>(layout.width), static_cast<png_uint_32>(layout.height), layout.bit_depth, layout.color_type,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(png, info, static_cast<png_uint_32>(layout.width), static_cast<png_uint_32>(layout.height), layout.bit_depth,
+                 layout.color_type, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_write_info(png, info);
     if constexpr (std::endian::native == std::endian::little) {
       if (layout.bit_depth == 16) png_set_swap(png);
@@ -163,8 +163,8 @@ struct JpegEncoder {
 Status write_png(const std::string& path, const std::uint8_t* pixels, int width, int height, int channels, PngCompression compression) {
   assert(channels == 1 || channels == 3);
   const int color_type = channels == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY;
-  return write_png_layout(path, pixels,
-                          {width, height, 8, color_type, static_cast<std::size_t>(width) * static_cast<std::size_t>(channels), compression});
+  return write_png_layout(
+      path, pixels, {width, height, 8, color_type, static_cast<std::size_t>(width) * static_cast<std::size_t>(channels), compression});
 }
 
 Status write_png(const std::string& path, const Image<std::uint8_t>& gray, PngCompression compression) {

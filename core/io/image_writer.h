@@ -25,7 +25,8 @@ enum class PngCompression : std::uint8_t {
 /// the reason; a file that could not be written whole is removed.
 [[nodiscard]] Status write_png(const std::string& path, const std::uint8_t* pixels, int width, int height, int channels,
                                PngCompression compression = PngCompression::kPicture);
-[[nodiscard]] Status write_png(const std::string& path, const Image<std::uint8_t>& gray, PngCompression compression = PngCompression::kPicture);
+[[nodiscard]] Status write_png(const std::string& path, const Image<std::uint8_t>& gray,
+                               PngCompression compression = PngCompression::kPicture);
 [[nodiscard]] Status write_png(const std::string& path, const ColorImage& color);
 /// 16-bit grey, the raw units of a depth camera.
 [[nodiscard]] Status write_depth_png(const std::string& path, const Image<std::uint16_t>& depth,

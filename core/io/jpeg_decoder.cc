@@ -90,7 +90,8 @@ Status decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& name,
   if (Status status = check_image_size(decoder.info.image_width, decoder.info.image_height, name); !status) return status;
   const J_COLOR_SPACE space = decoder.info.jpeg_color_space;
   if (space != JCS_GRAYSCALE && space != JCS_YCbCr && space != JCS_RGB) {
-    return {ErrorCode::kUnsupported, name + ": JPEG with " + std::to_string(decoder.info.num_components) + " colour components is not read"};
+    return {ErrorCode::kUnsupported,
+            name + ": JPEG with " + std::to_string(decoder.info.num_components) + " colour components is not read"};
   }
   if (!decoder.start(kind)) return decoder.broken(name);
   const std::size_t row_bytes = decoder.info.output_width * static_cast<std::size_t>(decoder.info.output_components);

@@ -135,7 +135,8 @@ Status decode_png(std::span<const std::uint8_t> bytes, const std::string& name, 
   if (!decoder.read_rows(image->pixels->data(), row_bytes)) return decoder.broken(name);
   image->width = decoder.width;
   image->height = decoder.height;
-  if (has_color && !wants_color) squeeze_to_gray(image->pixels, static_cast<std::size_t>(decoder.width) * static_cast<std::size_t>(decoder.height));
+  if (has_color && !wants_color)
+    squeeze_to_gray(image->pixels, static_cast<std::size_t>(decoder.width) * static_cast<std::size_t>(decoder.height));
   return Status::ok();
 }
 

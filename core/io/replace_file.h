@@ -15,7 +15,8 @@ namespace camloc {
 
 /// Writes a temporary file in the folder of `path`, fsyncs it, renames it and fsyncs the folder. A symbolic link is
 /// followed. The file gets mode 0644 less the umask.
-/// Errors: kIo (disk full, permission, no such folder, a device instead of a file); `path` is untouched then and the temporary file is gone.
+/// Errors: kIo (disk full, permission, no such folder, a device instead of a file); `path` is untouched then and the temporary file is
+/// gone.
 [[nodiscard]] Status replace_file(const std::string& path, std::span<const std::byte> bytes);
 
 }  // namespace camloc

@@ -43,7 +43,8 @@ Result<std::vector<StampedFile>> read_image_list(const fs::path& folder, const c
     const std::optional<std::int64_t> stamp_ns = parse_seconds_ns(stamp_text);
     if (!stamp_ns) return line_error(list_path, line.number, "stamp " + in_quotes(stamp_text) + " is not a time in seconds");
     const std::size_t begin = end == std::string_view::npos ? end : line.text.find_first_not_of(" \t,", end);
-    if (begin == std::string_view::npos) return line_error(list_path, line.number, "expected 'timestamp filename', the file name is missing");
+    if (begin == std::string_view::npos)
+      return line_error(list_path, line.number, "expected 'timestamp filename', the file name is missing");
     if (!files.empty() && *stamp_ns <= files.back().stamp_ns) {
       return line_error(list_path, line.number, "stamp " + in_quotes(stamp_text) + " is not after the one above it; sort the file by time");
     }
@@ -83,9 +84,7 @@ Result<Sequence> read_tum(const std::string& folder, double max_gap_s) {
   if (!colors) return colors.status();
   if (colors->empty()) return Status(ErrorCode::kInvalid, folder + "/rgb.txt: lists no image");
   Sequence sequence{folder, "tum", {}};
-  for (const StampedFile& color : *colors) {
-    sequence.frames.push_back({sequence.frames.size(), color.stamp_ns, color.path, ""});
-  }
+  for (const StampedFile& color : *colors) { sequence.frames.push_back({sequence.frames.size(), color.stamp_ns, color.path, ""}); }
   if (!is_file(fs::path(folder) / "depth.txt")) return sequence;
   Result<std::vector<StampedFile>> depths = read_image_list(folder, "depth.txt");
   if (!depths) return depths.status();
@@ -135,7 +134,8 @@ Result<Sequence> read_sequence(const std::string& folder, double max_gap_s, doub
   std::error_code error;
   const fs::file_status status = fs::status(folder, error);
   if (!fs::exists(status)) return Status(ErrorCode::kNotFound, folder + ": no such folder");
-  if (!fs::is_directory(status)) return Status(ErrorCode::kInvalid, folder + ": not a folder; a sequence is a TUM RGB-D or 7-Scenes folder");
+  if (!fs::is_directory(status))
+    return Status(ErrorCode::kInvalid, folder + ": not a folder; a sequence is a TUM RGB-D or 7-Scenes folder");
   return is_file(fs::path(folder) / "rgb.txt") ? read_tum(folder, max_gap_s) : read_7scenes(folder, frame_rate_hz);
 }
 

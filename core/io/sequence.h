@@ -16,21 +16,21 @@
 namespace camloc {
 
 struct SequenceFrame {
-  std::uint64_t index = 0;       ///< position in the whole recording, before any selection
+  std::uint64_t index = 0;  ///< position in the whole recording, before any selection
   std::int64_t stamp_ns = 0;
   std::string color_path;
-  std::string depth_path;        ///< empty: no depth within the association window
+  std::string depth_path;  ///< empty: no depth within the association window
 };
 
 struct StampedPose {
   std::int64_t stamp_ns = 0;
-  Rigid3 T_world_camera;         ///< as recorded; nearest rotation taken
+  Rigid3 T_world_camera;  ///< as recorded; nearest rotation taken
 };
 
 struct Sequence {
   std::string folder;
-  std::string layout;            ///< "tum" or "7scenes"
-  std::vector<SequenceFrame> frames;   ///< ascending in time
+  std::string layout;                 ///< "tum" or "7scenes"
+  std::vector<SequenceFrame> frames;  ///< ascending in time
 };
 
 /// Errors name file and line. Unsorted stamps, missing images and an empty folder are errors; a colour image without a

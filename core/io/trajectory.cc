@@ -45,7 +45,8 @@ Result<std::optional<Rigid3>> read_pose_matrix(const std::string& path) {
   Result<std::string> text = read_file_text(path, 1 << 16);
   if (!text) return text.status();
   const std::vector<std::string_view> fields = split_fields(*text, " \t\r\n,");
-  if (fields.size() != 16) return Status(ErrorCode::kInvalid, path + ": " + std::to_string(fields.size()) + " numbers, expected a 4x4 matrix");
+  if (fields.size() != 16)
+    return Status(ErrorCode::kInvalid, path + ": " + std::to_string(fields.size()) + " numbers, expected a 4x4 matrix");
   Eigen::Matrix4d matrix;
   for (int i = 0; i < 16; ++i) {
     const std::optional<double> value = parse_double(fields[static_cast<std::size_t>(i)]);
@@ -55,7 +56,8 @@ Result<std::optional<Rigid3>> read_pose_matrix(const std::string& path) {
   if (!matrix.allFinite()) return std::optional<Rigid3>();
   const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
   const double error = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  const bool is_rigid = error <= kMaxRotationError && rotation.determinant() > 0 && (matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() < 1e-6;
+  const bool is_rigid = error <= kMaxRotationError && rotation.determinant() > 0 &&
+                        (matrix.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() < 1e-6;
   if (!is_rigid) return Status(ErrorCode::kInvalid, path + ": not a rigid transform (rotation, translation, last row 0 0 0 1)");
   return std::optional<Rigid3>(Rigid3{nearest_rotation(rotation), matrix.topRightCorner<3, 1>()});
 }

@@ -13,9 +13,9 @@
 namespace camloc {
 
 struct CalibrationMonitorOptions {
-  double suspect_deviation = 0.035;   ///< of the median from 1
+  double suspect_deviation = 0.035;  ///< of the median from 1
   std::uint32_t min_frames = 8;
-  double max_sigma = 0.03;            ///< less certain frames take no part
+  double max_sigma = 0.03;  ///< less certain frames take no part
 };
 
 class CalibrationMonitor {

@@ -21,27 +21,26 @@
 namespace camloc {
 
 struct GlobalSearchOptions {
-  int num_keyframes = 80;           ///< retrieved: many, or the twin of a look-alike place is not among them
+  int num_keyframes = 80;  ///< retrieved: many, or the twin of a look-alike place is not among them
   int max_places = 6;
   int max_keyframes_per_place = 6;
-  double place_radius_m = 2.0;      ///< views of one place: camera centres this close
-  double place_angle_rad = 1.2;     ///< and viewing directions
-  int max_candidates = 8000;        ///< descriptors of one place
+  double place_radius_m = 2.0;   ///< views of one place: camera centres this close
+  double place_angle_rad = 1.2;  ///< and viewing directions
+  int max_candidates = 8000;     ///< descriptors of one place
   CandidateMatcherOptions matcher;
   /// Up to here a hypothesis is thin: on a repeated texture the matches may split between two poses, so the matches that
   /// it leaves over are asked for another one.
   std::uint32_t thin_inliers = 80;
-  double rival_distance_m = 0.25;   ///< a hypothesis farther than this from the best is a rival
+  double rival_distance_m = 0.25;  ///< a hypothesis farther than this from the best is a rival
   double rival_angle_rad = 0.2;
 };
 
 struct GlobalSearchResult {
-  PoseHypothesis best;              ///< looked at again, ready for verification
-  double margin = 1;                ///< 1 - inliers of the strongest rival / inliers of the best
+  PoseHypothesis best;  ///< looked at again, ready for verification
+  double margin = 1;    ///< 1 - inliers of the strongest rival / inliers of the best
   int num_places = 0;
-  bool has_candidates = false;      ///< retrieval found any view
+  bool has_candidates = false;  ///< retrieval found any view
 };
-
 
 /// Not thread-safe; allocates at construction only.
 class GlobalSearch {
@@ -67,12 +66,12 @@ class GlobalSearch {
   Retriever retriever_;
   CandidateMatcher matcher_;
   CandidateSet candidates_;
-  std::vector<std::uint32_t> list_;          ///< landmarks of one keyframe
+  std::vector<std::uint32_t> list_;  ///< landmarks of one keyframe
   std::vector<std::uint32_t> visit_of_landmark_;
   std::uint32_t visit_ = 0;
   std::array<Place, kMaxPlaces> places_;
   int num_places_ = 0;
-  std::array<PoseHypothesis, 2 * kMaxPlaces> hypotheses_;   ///< of this frame, looked at again
+  std::array<PoseHypothesis, 2 * kMaxPlaces> hypotheses_;  ///< of this frame, looked at again
   std::size_t num_hypotheses_ = 0;
   StageTimer* timer_;
 };

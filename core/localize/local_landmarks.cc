@@ -89,8 +89,10 @@ void LocalLandmarks::project_submap(const map_format::SubmapRecord& submap, cons
     if (cosine < limit) continue;
 
     const float log_distance = std::log(distance);
-    const int lowest = static_cast<int>(std::floor((log_reference_[landmark.min_reference] - log_distance) * inverse_log_scale_)) - options_.level_margin;
-    const int highest = static_cast<int>(std::ceil((log_reference_[landmark.max_reference] - log_distance) * inverse_log_scale_)) + options_.level_margin;
+    const int lowest =
+        static_cast<int>(std::floor((log_reference_[landmark.min_reference] - log_distance) * inverse_log_scale_)) - options_.level_margin;
+    const int highest =
+        static_cast<int>(std::ceil((log_reference_[landmark.max_reference] - log_distance) * inverse_log_scale_)) + options_.level_margin;
     if (highest < 0 || lowest > max_level) continue;
 
     ProjectedLandmark& out = projected_.emplace_back();
@@ -111,7 +113,8 @@ void LocalLandmarks::keep_most_observed() {
     for (const std::uint8_t count : num_observations_) ++histogram[count];
     std::size_t kept = 0;
     int threshold = 255;
-    while (threshold > 0 && kept + histogram[static_cast<std::size_t>(threshold)] <= limit) kept += histogram[static_cast<std::size_t>(threshold--)];
+    while (threshold > 0 && kept + histogram[static_cast<std::size_t>(threshold)] <= limit)
+      kept += histogram[static_cast<std::size_t>(threshold--)];
     std::size_t at_threshold = limit - kept;  // of the last class only as many as fit, in map order
     std::size_t out = 0;
     for (std::size_t i = 0; i < projected_.size(); ++i) {

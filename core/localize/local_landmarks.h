@@ -16,12 +16,12 @@
 namespace camloc {
 
 struct LocalLandmarksOptions {
-  int max_landmarks = 3000;         ///< projected at most; the most often observed are kept
-  int max_submaps = 64;             ///< visited at most
-  int max_visited = 60000;          ///< landmarks looked at, at most
+  int max_landmarks = 3000;  ///< projected at most; the most often observed are kept
+  int max_submaps = 64;      ///< visited at most
+  int max_visited = 60000;   ///< landmarks looked at, at most
   double max_range_m = 8.0;
   double view_angle_margin_rad = 0.5;  ///< beyond the widest angle it was mapped from
-  int level_margin = 1;             ///< pyramid levels beyond those its mapping predicts
+  int level_margin = 1;                ///< pyramid levels beyond those its mapping predicts
 };
 
 /// Not thread-safe; allocates at construction only.
@@ -40,7 +40,7 @@ class LocalLandmarks {
   Intrinsics color_;
   LocalLandmarksOptions options_;
   float inverse_log_scale_;
-  std::vector<float> log_reference_;            ///< per 8-bit code
+  std::vector<float> log_reference_;  ///< per 8-bit code
   struct NearSubmap {
     float distance_m;
     std::uint32_t index;

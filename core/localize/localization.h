@@ -24,18 +24,18 @@ enum class State : std::uint8_t {
 enum class Reason : std::uint8_t {
   kNone,
   kNotStarted,
-  kNoImage,             ///< empty or of the wrong size
-  kFewFeatures,         ///< black, white, blurred away
-  kNoCandidates,        ///< retrieval found no view alike
+  kNoImage,       ///< empty or of the wrong size
+  kFewFeatures,   ///< black, white, blurred away
+  kNoCandidates,  ///< retrieval found no view alike
   kFewMatches,
   kFewInliers,
   kLowInlierRatio,
-  kPoorSpread,          ///< inliers crowd in one corner of the image
-  kAmbiguous,           ///< a second place explains the image nearly as well
-  kDepthInconsistent,   ///< measured depth contradicts the pose
-  kCalibrationMismatch, ///< images fit the map only with another focal length
+  kPoorSpread,           ///< inliers crowd in one corner of the image
+  kAmbiguous,            ///< a second place explains the image nearly as well
+  kDepthInconsistent,    ///< measured depth contradicts the pose
+  kCalibrationMismatch,  ///< images fit the map only with another focal length
   kImplausibleMotion,
-  kUncertain,           ///< covariance too large to be of use
+  kUncertain,  ///< covariance too large to be of use
   kMapDamaged,
 };
 
@@ -51,28 +51,28 @@ struct Localization {
   std::int64_t stamp_ns = 0;
   State state = State::kLost;
   Reason reason = Reason::kNotStarted;
-  bool has_pose = false;         ///< T_map_camera is set (LOCALIZED, COASTING; COARSE: the candidate)
+  bool has_pose = false;  ///< T_map_camera is set (LOCALIZED, COASTING; COARSE: the candidate)
   Rigid3 T_map_camera;
-  Matrix6d covariance = Matrix6d::Zero();  ///< of pose_error(): metres, radians, axes of `map`
-  int quality = -1;              ///< 0..100, -1 when there is no pose
-  bool is_tracked = false;       ///< found from the prediction, not by global search
+  Matrix6d covariance = Matrix6d::Zero();                                             ///< of pose_error(): metres, radians, axes of `map`
+  int quality = -1;                                                                   ///< 0..100, -1 when there is no pose
+  bool is_tracked = false;                                                            ///< found from the prediction, not by global search
   std::uint32_t num_features = 0, num_visible = 0, num_matches = 0, num_inliers = 0;  ///< visible: landmarks that the pose puts in view
   double inlier_ratio = 0;
-  double spread = 0;             ///< share of the image's 8 x 6 cells that hold an inlier
-  double margin = 1;             ///< 1 - inliers of the best rival place / inliers
-  double focal_scale = 1;        ///< true / assumed focal length as this frame sees it
-  double depth_agreement = 1;    ///< share of inliers with depth whose depth agrees
-  double map_depth_agreement = 1;  ///< share of landmarks in view that lie on the measured surface rather than in free space
+  double spread = 0;                ///< share of the image's 8 x 6 cells that hold an inlier
+  double margin = 1;                ///< 1 - inliers of the best rival place / inliers
+  double focal_scale = 1;           ///< true / assumed focal length as this frame sees it
+  double depth_agreement = 1;       ///< share of inliers with depth whose depth agrees
+  double map_depth_agreement = 1;   ///< share of landmarks in view that lie on the measured surface rather than in free space
   std::uint32_t reset_counter = 0;  ///< grows with every global fix: poses before and after may differ by a jump
-  double jump_m = 0;             ///< size of that jump, 0 while tracking
+  double jump_m = 0;                ///< size of that jump, 0 while tracking
   std::array<std::int64_t, kNumStages> stage_ns{};  ///< zero when no clock was given
 };
 
 /// Health of the calibration, gathered over frames.
 struct CalibrationHealth {
-  bool is_suspect = false;      ///< the assumed focal length does not fit the map
-  double focal_scale = 1;       ///< true / assumed, median of the recent frames
-  std::uint32_t num_frames = 0; ///< that took part
+  bool is_suspect = false;       ///< the assumed focal length does not fit the map
+  double focal_scale = 1;        ///< true / assumed, median of the recent frames
+  std::uint32_t num_frames = 0;  ///< that took part
 };
 
 }  // namespace camloc

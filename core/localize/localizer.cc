@@ -118,7 +118,8 @@ Localizer::Candidate Localizer::search_globally(const Frame& frame) {
   const GlobalSearchResult found = global_search_.search(observations_, estimator_, frame.sequence);
   Candidate candidate{.hypothesis = found.best, .margin = found.margin, .is_tracked = false};
   candidate.reason = found.has_candidates ? verify(found.best, found.margin, candidate.is_tracked, verification_) : Reason::kNoCandidates;
-  if (candidate.reason == Reason::kNone && !fits_motion(frame, found.best) && !is_confirmed(frame, found.best)) candidate.reason = Reason::kImplausibleMotion;
+  if (candidate.reason == Reason::kNone && !fits_motion(frame, found.best) && !is_confirmed(frame, found.best))
+    candidate.reason = Reason::kImplausibleMotion;
   if (candidate.reason == Reason::kAmbiguous) ambiguous_ns_ = frame.stamp_ns;
   if (candidate.reason == Reason::kNone && was_ambiguous(frame, found.best)) candidate.reason = Reason::kAmbiguous;
   return candidate;

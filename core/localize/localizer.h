@@ -25,7 +25,7 @@ namespace camloc {
 
 struct LocalizerOptions {
   OrbOptions orb;
-  bool use_tracking = true;         ///< false: every frame is a kidnapped robot
+  bool use_tracking = true;  ///< false: every frame is a kidnapped robot
   bool use_depth = true;
   std::int64_t max_coast_ns = 500'000'000;  ///< COASTING ends this long after the last verified pose
   std::int64_t (*now_ns)() = nullptr;       ///< monotonic clock for stage times; core itself reads none
@@ -71,7 +71,7 @@ class Localizer {
   PoseEstimator estimator_;
   GlobalSearch global_search_;
   MotionModel motion_;
-  MotionModel unconfirmed_;   ///< the last fix that contradicts the motion so far
+  MotionModel unconfirmed_;                   ///< the last fix that contradicts the motion so far
   std::int64_t unconfirmed_since_ns_ = 0;     ///< when fixes that agree with it began
   std::optional<std::int64_t> ambiguous_ns_;  ///< when another place last explained a frame nearly as well
   CalibrationMonitor calibration_;

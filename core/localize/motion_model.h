@@ -12,11 +12,11 @@
 namespace camloc {
 
 struct MotionModelOptions {
-  double max_speed_m_per_s = 3.0;            ///< faster is implausible for a head or a robot indoors
+  double max_speed_m_per_s = 3.0;  ///< faster is implausible for a head or a robot indoors
   double max_turn_rad_per_s = 7.0;
-  double speed_change_m_per_s = 0.4;         ///< standard deviation of what the velocity does until the next frame
+  double speed_change_m_per_s = 0.4;  ///< standard deviation of what the velocity does until the next frame
   double turn_change_rad_per_s = 0.5;
-  double expected_sigmas = 3.0;              ///< is_expected(): of prediction and pose together, position and rotation each
+  double expected_sigmas = 3.0;                    ///< is_expected(): of prediction and pose together, position and rotation each
   std::int64_t max_velocity_age_ns = 500'000'000;  ///< two fixes farther apart say nothing about velocity
 };
 

@@ -25,7 +25,7 @@ class FrameObservations {
   [[nodiscard]] const Features& features() const { return *features_; }
   [[nodiscard]] const FeatureGrid& grid() const { return grid_; }
   [[nodiscard]] std::size_t size() const { return features_->size(); }
-  [[nodiscard]] float x(std::size_t i) const { return x_[i]; }              ///< normalized, undistorted
+  [[nodiscard]] float x(std::size_t i) const { return x_[i]; }  ///< normalized, undistorted
   [[nodiscard]] float y(std::size_t i) const { return y_[i]; }
   [[nodiscard]] float depth_m(std::size_t i) const { return depth_m_[i]; }  ///< along the optical axis, 0 = none
   /// Measured depth at any pixel of the current frame, metres, 0 = none. The frame's pixels must still be there.

@@ -162,7 +162,8 @@ void PoseEstimator::measure_focal_scale(PoseHypothesis* hypothesis) {
 
 // Landmarks in front of the measured surface by more than its noise are where the camera sees through: at a wrong pose
 // most are. Landmarks behind it are hidden and say nothing: people and moved things do that, too.
-void PoseEstimator::measure_map_depth(const FrameObservations& frame, std::span<const ProjectedLandmark> visible, PoseHypothesis* hypothesis) const {
+void PoseEstimator::measure_map_depth(const FrameObservations& frame, std::span<const ProjectedLandmark> visible,
+                                      PoseHypothesis* hypothesis) const {
   const Rigid3 T_camera_map = hypothesis->T_map_camera.inverse();
   const std::size_t step = std::max<std::size_t>(1, visible.size() / kMapDepthSamples);
   std::uint32_t num_on_surface = 0, num_seen_through = 0;
@@ -173,8 +174,10 @@ void PoseEstimator::measure_map_depth(const FrameObservations& frame, std::span<
     const double measured = frame.depth_at(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
     if (measured <= 0) continue;
     const double tolerance = kMapDepthTolerance * p_camera.z() + 3.0 * options_.refinement.depth_noise.sigma_m(p_camera.z());
-    if (std::abs(measured - p_camera.z()) <= tolerance) ++num_on_surface;
-    else if (measured > p_camera.z()) ++num_seen_through;
+    if (std::abs(measured - p_camera.z()) <= tolerance)
+      ++num_on_surface;
+    else if (measured > p_camera.z())
+      ++num_seen_through;
   }
   hypothesis->num_map_depth = num_on_surface + num_seen_through;
   if (hypothesis->num_map_depth > 0) hypothesis->map_depth_agreement = static_cast<double>(num_on_surface) / hypothesis->num_map_depth;

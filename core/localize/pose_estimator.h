@@ -25,16 +25,16 @@ struct PoseHypothesis {
   bool is_found = false;
   Rigid3 T_map_camera;
   Matrix6d covariance = Matrix6d::Zero();
-  std::uint32_t num_matches = 0;   ///< of the guided look around the pose
+  std::uint32_t num_matches = 0;  ///< of the guided look around the pose
   std::uint32_t num_inliers = 0;
-  std::uint32_t num_visible = 0;   ///< landmarks that should be in view, as far as they were projected
-  double spread = 0;               ///< share of the image's 8 x 6 cells that hold an inlier
+  std::uint32_t num_visible = 0;  ///< landmarks that should be in view, as far as they were projected
+  double spread = 0;              ///< share of the image's 8 x 6 cells that hold an inlier
   std::uint32_t num_with_depth = 0;
-  double depth_agreement = 1;      ///< share of inliers with depth whose depth agrees
+  double depth_agreement = 1;       ///< share of inliers with depth whose depth agrees
   std::uint32_t num_map_depth = 0;  ///< landmarks in view whose pixel has a measured depth and that nothing hides
   double map_depth_agreement = 1;   ///< share of those that lie on the measured surface; the others are seen through
   double rms_px = 0;
-  double focal_scale = 1;          ///< true / assumed focal length that fits these matches best
+  double focal_scale = 1;  ///< true / assumed focal length that fits these matches best
   double focal_scale_sigma = 1;
   bool has_focal_scale = false;
 

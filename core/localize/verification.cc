@@ -21,7 +21,9 @@ bool contradicts_depth(const PoseHypothesis& hypothesis, const VerificationOptio
 
 Reason verify(const PoseHypothesis& hypothesis, double margin, bool is_tracked, const VerificationOptions& options) {
   const bool has_map_depth = hypothesis.num_map_depth >= options.min_map_depth_samples;
-  const std::uint32_t min_inliers = is_tracked ? options.min_tracked_inliers : has_map_depth ? options.min_inliers : options.min_inliers_no_depth;
+  const std::uint32_t min_inliers = is_tracked      ? options.min_tracked_inliers
+                                    : has_map_depth ? options.min_inliers
+                                                    : options.min_inliers_no_depth;
 
   if (hypothesis.num_matches < min_inliers) return Reason::kFewMatches;
   if (!hypothesis.is_found) return Reason::kFewInliers;

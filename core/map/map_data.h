@@ -18,12 +18,12 @@
 namespace camloc {
 
 struct MapLandmark {
-  Eigen::Vector3f position_m;           ///< in `map`
-  Eigen::Vector3f direction;            ///< mean unit vector from the landmark to the cameras that saw it
-  float view_cosine = 1;                ///< cosine of the widest angle to that direction
+  Eigen::Vector3f position_m;                      ///< in `map`
+  Eigen::Vector3f direction;                       ///< mean unit vector from the landmark to the cameras that saw it
+  float view_cosine = 1;                           ///< cosine of the widest angle to that direction
   float min_reference_m = 0, max_reference_m = 0;  ///< distance at which it would be seen on pyramid level 0
-  float angle_rad = 0;                  ///< keypoint orientation where descriptors[0] was seen
-  float position_sigma_m = 0;           ///< scatter of its observations
+  float angle_rad = 0;                             ///< keypoint orientation where descriptors[0] was seen
+  float position_sigma_m = 0;                      ///< scatter of its observations
   std::uint32_t num_observations = 0;
   std::vector<Descriptor> descriptors;  ///< at least one; further ones where the appearance differs
 };
@@ -39,15 +39,15 @@ struct InvertedEntry {
 };
 
 struct MapData {
-  std::string name;                     ///< free text, at most 63 bytes
-  RgbdCamera camera;                    ///< that the map was made with
+  std::string name;   ///< free text, at most 63 bytes
+  RgbdCamera camera;  ///< that the map was made with
   float orb_scale_factor = 1.2F;
   std::uint32_t orb_num_levels = 8;
-  double pose_sigma_m = 0;              ///< what the mapping poses are off by, between views and by the bend of the map, one
-  double pose_sigma_rad = 0;            ///< standard deviation per axis: no pose in this map can be better than that
+  double pose_sigma_m = 0;    ///< what the mapping poses are off by, between views and by the bend of the map, one
+  double pose_sigma_rad = 0;  ///< standard deviation per axis: no pose in this map can be better than that
   std::vector<MapLandmark> landmarks;
   std::vector<MapKeyframe> keyframes;
-  std::vector<Descriptor> words;        ///< vocabulary
+  std::vector<Descriptor> words;                          ///< vocabulary
   std::vector<std::vector<InvertedEntry>> inverted_file;  ///< per word, keyframes ascending
   std::optional<WcsDatum> wcs;
 };

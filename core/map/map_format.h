@@ -52,36 +52,45 @@ namespace camloc::map_format {
 inline constexpr std::uint32_t kVersion = 1;
 /// "CMAP", then bytes that a transfer in text mode would change, as in PNG.
 inline constexpr std::array<char, 8> kMagic = {'C', 'M', 'A', 'P', '\r', '\n', '\x1a', '\n'};
-inline constexpr std::uint32_t kByteOrder = 0x01020304;         ///< as a machine of the writer's byte order reads it
+inline constexpr std::uint32_t kByteOrder = 0x01020304;  ///< as a machine of the writer's byte order reads it
 inline constexpr std::uint32_t kOtherByteOrder = 0x04030201;
 inline constexpr std::uint64_t kAlignment = 64;
-inline constexpr std::uint32_t kMaxKeyframes = 65535;           ///< the inverted file names them with 16 bits
+inline constexpr std::uint32_t kMaxKeyframes = 65535;  ///< the inverted file names them with 16 bits
 
 struct FileHeader {
   std::array<char, 8> magic;
   std::uint32_t byte_order;
   std::uint32_t version;
   std::uint64_t file_bytes;
-  std::uint64_t map_id;        ///< hash of the section table, which holds the hashes of all content
+  std::uint64_t map_id;  ///< hash of the section table, which holds the hashes of all content
   std::uint32_t num_sections;
   std::array<std::uint32_t, 5> reserved;  ///< zero
-  std::uint64_t header_hash;   ///< of the 56 bytes before
+  std::uint64_t header_hash;              ///< of the 56 bytes before
 };
 static_assert(sizeof(FileHeader) == 64);
 
 enum class SectionId : std::uint32_t {
-  kMeta, kSubmaps, kLandmarks, kDescriptors, kKeyframes, kKeyframeLists,
-  kWords, kWordBegin, kInvertedKeyframes, kInvertedWeights, kWcs,
+  kMeta,
+  kSubmaps,
+  kLandmarks,
+  kDescriptors,
+  kKeyframes,
+  kKeyframeLists,
+  kWords,
+  kWordBegin,
+  kInvertedKeyframes,
+  kInvertedWeights,
+  kWcs,
 };
 inline constexpr std::uint32_t kNumSections = 11;
 inline constexpr std::array<const char*, kNumSections> kSectionNames = {
-    "meta", "submaps", "landmarks", "descriptors", "keyframes", "keyframe_lists",
+    "meta",  "submaps",    "landmarks",          "descriptors",      "keyframes", "keyframe_lists",
     "words", "word_begin", "inverted_keyframes", "inverted_weights", "wcs"};
 
 struct SectionRecord {
   SectionId id;
   std::uint32_t element_bytes;
-  std::uint64_t offset;        ///< from the start of the file, multiple of 64
+  std::uint64_t offset;  ///< from the start of the file, multiple of 64
   std::uint64_t num_elements;
   std::uint64_t hash;
 };
@@ -97,9 +106,9 @@ static_assert(sizeof(TransformRecord) == 56);
 /// See Intrinsics.
 struct IntrinsicsRecord {
   std::int32_t width, height;
-  std::uint32_t lens;          ///< 0 pinhole, 1 Brown-Conrady, 2 equidistant
-  std::uint32_t reserved;      ///< zero
-  double fx, fy, cx, cy;       ///< pixels
+  std::uint32_t lens;      ///< 0 pinhole, 1 Brown-Conrady, 2 equidistant
+  std::uint32_t reserved;  ///< zero
+  double fx, fy, cx, cy;   ///< pixels
   std::array<double, 5> distortion;
 };
 static_assert(sizeof(IntrinsicsRecord) == 88);
@@ -133,23 +142,23 @@ static_assert(sizeof(SubmapRecord) == 24);
 
 /// Everything about a landmark but its descriptors. The codes are defined in landmark_codes.h.
 struct LandmarkRecord {
-  std::array<std::uint16_t, 3> position;   ///< fraction of its sub-map's extent
-  std::array<std::uint8_t, 2> direction;   ///< octahedral code of the mean direction landmark -> camera, axes of `map`
-  std::uint8_t view_cosine;      ///< cosine of the widest angle between that direction and an observation, [-1, 1] -> 0..255
-  std::uint8_t min_reference;    ///< smallest and largest reference distance over its observations; the reference
-  std::uint8_t max_reference;    ///< distance d * scale_factor^level is where it would be seen on level 0; log code
-  std::uint8_t angle;            ///< keypoint orientation where the first descriptor was seen, 2 pi / 256
-  std::uint8_t num_observations; ///< frames that saw it, saturating
-  std::uint8_t num_descriptors;  ///< at least 1
-  std::uint16_t position_sigma_mm;  ///< scatter of its observations, saturating
+  std::array<std::uint16_t, 3> position;  ///< fraction of its sub-map's extent
+  std::array<std::uint8_t, 2> direction;  ///< octahedral code of the mean direction landmark -> camera, axes of `map`
+  std::uint8_t view_cosine;               ///< cosine of the widest angle between that direction and an observation, [-1, 1] -> 0..255
+  std::uint8_t min_reference;             ///< smallest and largest reference distance over its observations; the reference
+  std::uint8_t max_reference;             ///< distance d * scale_factor^level is where it would be seen on level 0; log code
+  std::uint8_t angle;                     ///< keypoint orientation where the first descriptor was seen, 2 pi / 256
+  std::uint8_t num_observations;          ///< frames that saw it, saturating
+  std::uint8_t num_descriptors;           ///< at least 1
+  std::uint16_t position_sigma_mm;        ///< scatter of its observations, saturating
 };
 static_assert(sizeof(LandmarkRecord) == 16);
 
 /// One mapped view. Keyframes are the minimum set that covers all landmarks (greedy set cover).
 struct KeyframeRecord {
-  std::array<float, 4> rotation_wxyz;   ///< of T_map_camera, unit quaternion
+  std::array<float, 4> rotation_wxyz;  ///< of T_map_camera, unit quaternion
   std::array<float, 3> position_m;
-  std::uint32_t first_list_byte;        ///< into keyframe_lists; the list ends where the next one begins
+  std::uint32_t first_list_byte;  ///< into keyframe_lists; the list ends where the next one begins
   std::uint32_t num_landmark_entries;
 };
 static_assert(sizeof(KeyframeRecord) == 36);
@@ -157,7 +166,7 @@ static_assert(sizeof(KeyframeRecord) == 36);
 /// Where the map lies in the world.
 struct WcsRecord {
   TransformRecord T_wcs_map;
-  std::array<double, 36> covariance;    ///< of pose_error(), metres then radians, axes of `wcs`; symmetric, row by row
+  std::array<double, 36> covariance;  ///< of pose_error(), metres then radians, axes of `wcs`; symmetric, row by row
 };
 static_assert(sizeof(WcsRecord) == 344);
 

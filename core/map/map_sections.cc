@@ -43,15 +43,14 @@ Result<FileHeader> read_header(std::span<const std::byte> bytes) {
   const std::uint64_t hash = map_hash(bytes.first(offsetof(FileHeader, header_hash)));
   if (header.header_hash != hash || header.byte_order != map_format::kByteOrder) return corrupt("the header is damaged");
   if (header.version > map_format::kVersion) {
-    return Status(ErrorCode::kUnsupported, "made by a newer camloc (format " + std::to_string(header.version) +
-                                               ", this one reads " + std::to_string(map_format::kVersion) + ")");
+    return Status(ErrorCode::kUnsupported, "made by a newer camloc (format " + std::to_string(header.version) + ", this one reads " +
+                                               std::to_string(map_format::kVersion) + ")");
   }
   if (header.version < map_format::kVersion) {
     return Status(ErrorCode::kUnsupported, "format " + std::to_string(header.version) + " is no longer read");
   }
   if (header.file_bytes > bytes.size()) {
-    return corrupt("the file is truncated: " + std::to_string(bytes.size()) + " of " + std::to_string(header.file_bytes) +
-                   " bytes");
+    return corrupt("the file is truncated: " + std::to_string(bytes.size()) + " of " + std::to_string(header.file_bytes) + " bytes");
   }
   if (header.file_bytes < bytes.size()) return corrupt("the file is longer than its header says");
   if (header.num_sections != map_format::kNumSections || bytes.size() < kFirstSection) return corrupt("wrong section table");
@@ -130,8 +129,7 @@ Status check_meta(const map_format::MetaRecord& meta) {
   if (meta.color.lens > 2 || meta.depth.lens > 2) return corrupt("unknown lens model");
   if (meta.is_depth_registered > 1 || meta.poses_are_of_depth_camera > 1) return corrupt("a flag that is neither 0 nor 1");
   if (!is_transform(meta.T_color_depth)) return corrupt("T_color_depth is no rigid transform");
-  if (!(meta.pose_sigma_m >= 0 && std::isfinite(meta.pose_sigma_m)) ||
-      !(meta.pose_sigma_rad >= 0 && std::isfinite(meta.pose_sigma_rad))) {
+  if (!(meta.pose_sigma_m >= 0 && std::isfinite(meta.pose_sigma_m)) || !(meta.pose_sigma_rad >= 0 && std::isfinite(meta.pose_sigma_rad))) {
     return corrupt("negative or infinite pose sigma");
   }
   if (!(meta.orb_scale_factor >= 1.01F && meta.orb_scale_factor <= 4) || meta.orb_num_levels < 1 || meta.orb_num_levels > 32) {
@@ -191,8 +189,8 @@ Status check_keyframes(const MapSections& map) {
 
 Status check_inverted_file(const MapSections& map) {
   const std::size_t num_entries = map.inverted_keyframes.size();
-  if (map.inverted_weights.size() != num_entries || map.word_begin.size() != map.words.size() + 1 ||
-      map.word_begin.front() != 0 || map.word_begin.back() != num_entries) {
+  if (map.inverted_weights.size() != num_entries || map.word_begin.size() != map.words.size() + 1 || map.word_begin.front() != 0 ||
+      map.word_begin.back() != num_entries) {
     return corrupt("inverted file and words do not belong together");
   }
   for (std::size_t word = 0; word < map.words.size(); ++word) {

@@ -17,8 +17,8 @@ namespace camloc {
 
 /// Looks into the bytes it was made from.
 struct MapSections {
-  map_format::FileHeader header{};   ///< a copy
-  map_format::MetaRecord meta{};     ///< a copy
+  map_format::FileHeader header{};  ///< a copy
+  map_format::MetaRecord meta{};    ///< a copy
   std::span<const map_format::SubmapRecord> submaps;
   std::span<const map_format::LandmarkRecord> landmarks;
   std::span<const Descriptor> descriptors;

@@ -249,9 +249,7 @@ Eigen::Vector3f MapView::position_m(std::uint32_t landmark) const {
   return position_m(impl_->submaps[submap_of(landmark)], impl_->map.landmarks[landmark]);
 }
 
-Eigen::Vector3f MapView::direction(const map_format::LandmarkRecord& landmark) {
-  return map_format::decode_direction(landmark.direction);
-}
+Eigen::Vector3f MapView::direction(const map_format::LandmarkRecord& landmark) { return map_format::decode_direction(landmark.direction); }
 
 float MapView::reference_m(std::uint8_t code) { return map_format::kReferenceTable[code]; }
 
@@ -284,8 +282,8 @@ std::size_t MapView::keyframe_landmarks(std::uint32_t keyframe, std::span<std::u
   std::uint64_t landmark = 0;
   for (std::size_t i = 0; i < count; ++i) {
     // The list was valid at open; the clamp is for a file that was overwritten since.
-    landmark = std::min<std::uint64_t>(landmark + map_format::read_varint(impl_->map.keyframe_lists, &cursor),
-                                       impl_->info.num_landmarks - 1);
+    landmark =
+        std::min<std::uint64_t>(landmark + map_format::read_varint(impl_->map.keyframe_lists, &cursor), impl_->info.num_landmarks - 1);
     out[i] = static_cast<std::uint32_t>(landmark);
   }
   return count;

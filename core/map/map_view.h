@@ -25,7 +25,7 @@ namespace camloc {
 struct MapInfo {
   std::string path;
   std::string name;
-  std::uint64_t map_id = 0;         ///< hash of the content, the same for identical maps
+  std::uint64_t map_id = 0;  ///< hash of the content, the same for identical maps
   std::uint64_t file_bytes = 0;
   std::uint32_t version = 0;
   std::uint32_t num_submaps = 0, num_landmarks = 0, num_descriptors = 0, num_keyframes = 0, num_words = 0;
@@ -56,15 +56,14 @@ class MapView {
   [[nodiscard]] std::span<const map_format::SubmapRecord> submaps() const;
   [[nodiscard]] std::span<const map_format::LandmarkRecord> landmarks() const;
   [[nodiscard]] std::span<const map_format::KeyframeRecord> keyframes() const;
-  [[nodiscard]] std::span<const Descriptor> descriptors() const;   ///< all, ordered by landmark
+  [[nodiscard]] std::span<const Descriptor> descriptors() const;  ///< all, ordered by landmark
   [[nodiscard]] std::span<const Descriptor> words() const;
 
   /// Sub-map that holds a landmark.
   [[nodiscard]] std::uint32_t submap_of(std::uint32_t landmark) const;
   [[nodiscard]] Eigen::Vector3f position_m(std::uint32_t landmark) const;
   /// Position with the sub-map already known: the fast way to walk through one.
-  [[nodiscard]] static Eigen::Vector3f position_m(const map_format::SubmapRecord& submap,
-                                                  const map_format::LandmarkRecord& landmark) {
+  [[nodiscard]] static Eigen::Vector3f position_m(const map_format::SubmapRecord& submap, const map_format::LandmarkRecord& landmark) {
     const float scale = submap.extent_m * (1.0F / 65535.0F);
     return {submap.origin_m[0] + scale * landmark.position[0], submap.origin_m[1] + scale * landmark.position[1],
             submap.origin_m[2] + scale * landmark.position[2]};

@@ -72,8 +72,7 @@ Status check_globals(const MapData& map) {
   if (map.name.size() >= sizeof(map_format::MetaRecord::name)) return invalid("a name of more than 63 bytes");
   if (Status status = map.camera.validate(); !status.is_ok()) return invalid(status.message());
   if (!is_transform(map.camera.T_color_depth)) return invalid("T_color_depth is no rigid transform");
-  if (!(map.pose_sigma_m >= 0 && std::isfinite(map.pose_sigma_m)) ||
-      !(map.pose_sigma_rad >= 0 && std::isfinite(map.pose_sigma_rad))) {
+  if (!(map.pose_sigma_m >= 0 && std::isfinite(map.pose_sigma_m)) || !(map.pose_sigma_rad >= 0 && std::isfinite(map.pose_sigma_rad))) {
     return invalid("negative or infinite pose sigma");
   }
   if (!(map.orb_scale_factor >= 1 && map.orb_scale_factor <= 4) || map.orb_num_levels < 1 || map.orb_num_levels > 32) {
@@ -252,8 +251,7 @@ class FileBuilder {
   }
 
  private:
-  static constexpr std::size_t kTableEnd =
-      sizeof(map_format::FileHeader) + map_format::kNumSections * sizeof(map_format::SectionRecord);
+  static constexpr std::size_t kTableEnd = sizeof(map_format::FileHeader) + map_format::kNumSections * sizeof(map_format::SectionRecord);
   static constexpr std::size_t kFirstSection = (kTableEnd + map_format::kAlignment - 1) & ~(map_format::kAlignment - 1);
 
   std::vector<std::byte> bytes_;
@@ -283,7 +281,9 @@ void add_keyframes(const MapData& map, const std::vector<Placement>& order, File
   for (const MapKeyframe& keyframe : map.keyframes) {
     const Eigen::Quaternionf q = keyframe.T_map_camera.rotation.cast<float>();
     const Eigen::Vector3f t = keyframe.T_map_camera.translation.cast<float>();
-    records.push_back({{q.w(), q.x(), q.y(), q.z()}, {t.x(), t.y(), t.z()}, static_cast<std::uint32_t>(lists.size()),
+    records.push_back({{q.w(), q.x(), q.y(), q.z()},
+                       {t.x(), t.y(), t.z()},
+                       static_cast<std::uint32_t>(lists.size()),
                        static_cast<std::uint32_t>(keyframe.landmarks.size())});
     list.clear();
     for (const std::uint32_t landmark : keyframe.landmarks) list.push_back(new_index[landmark]);

@@ -16,8 +16,7 @@ struct CandidateView {
 };
 
 std::uint32_t gain_of(const std::vector<std::uint32_t>& items, const std::vector<std::uint32_t>& times_covered) {
-  return static_cast<std::uint32_t>(
-      std::count_if(items.begin(), items.end(), [&](std::uint32_t i) { return times_covered[i] == 0; }));
+  return static_cast<std::uint32_t>(std::count_if(items.begin(), items.end(), [&](std::uint32_t i) { return times_covered[i] == 0; }));
 }
 
 // A gain can only shrink as views are taken, so an old gain is an upper bound: only the top of the queue is looked at again

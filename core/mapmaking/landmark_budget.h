@@ -24,8 +24,7 @@ struct LandmarkBudgetOptions {
 
 /// Indices of the landmarks to keep, ascending. `worth` may say for each landmark how many observations those in `views` stand
 /// for, where the views are a choice themselves; empty: each for itself.
-[[nodiscard]] std::vector<std::uint32_t> select_landmarks(std::span<const std::vector<ViewObservation>> views,
-                                                          std::size_t num_landmarks, const LandmarkBudgetOptions& options,
-                                                          std::span<const float> worth = {});
+[[nodiscard]] std::vector<std::uint32_t> select_landmarks(std::span<const std::vector<ViewObservation>> views, std::size_t num_landmarks,
+                                                          const LandmarkBudgetOptions& options, std::span<const float> worth = {});
 
 }  // namespace camloc

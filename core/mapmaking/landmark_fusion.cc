@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/base/mix_bits.h"
 #include "core/mapmaking/landmark_fusion.h"
 
 #include <Eigen/LU>
@@ -9,6 +8,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "core/base/mix_bits.h"
 #include "core/features/hamming.h"
 
 namespace camloc {
@@ -123,7 +123,7 @@ void LandmarkFusion::gather_candidates(const ViewFeatures& view) {
 void LandmarkFusion::find_pairs(const ViewFeatures& view) {
   pairs_.clear();
   const Rigid3 T_camera_map = view.T_map_camera.inverse();
-  const Eigen::Matrix3d R = T_camera_map.rotation.toRotationMatrix();   // a third of the work of a quaternion, a million times
+  const Eigen::Matrix3d R = T_camera_map.rotation.toRotationMatrix();  // a third of the work of a quaternion, a million times
   for (const std::uint32_t index : candidates_) {
     const Eigen::Vector3d p_camera = R * landmarks_[index].position_m + T_camera_map.translation;
     if (p_camera.z() > 0.1) pair_landmark(view, index, p_camera);
@@ -144,8 +144,7 @@ void LandmarkFusion::pair_landmark(const ViewFeatures& view, std::uint32_t index
   const auto bucket_of = [&](float value, int count) {
     return std::clamp(static_cast<int>(std::floor(value / static_cast<float>(grid_.cell_px()))), 0, count - 1);
   };
-  const int first_column = bucket_of(pixel.x() - reach, grid_.columns()),
-            last_column = bucket_of(pixel.x() + reach, grid_.columns());
+  const int first_column = bucket_of(pixel.x() - reach, grid_.columns()), last_column = bucket_of(pixel.x() + reach, grid_.columns());
   const int first_row = bucket_of(pixel.y() - reach, grid_.rows()), last_row = bucket_of(pixel.y() + reach, grid_.rows());
   for (int row = first_row; row <= last_row; ++row) {
     for (int column = first_column; column <= last_column; ++column) {
@@ -165,8 +164,7 @@ bool LandmarkFusion::is_consistent(const Fused& landmark, double z_m, const View
   const double depth = view.depth_m[feature];
   if (depth <= 0) return false;
   const double sigma = depth_noise_.sigma_m(depth) * std::sqrt(1.0 + 1.0 / landmark.num_observations);
-  const double tolerance =
-      std::clamp(options_.max_depth_sigmas * sigma, options_.min_depth_tolerance_m, options_.max_depth_tolerance_m);
+  const double tolerance = std::clamp(options_.max_depth_sigmas * sigma, options_.min_depth_tolerance_m, options_.max_depth_tolerance_m);
   if (std::abs(z_m - depth) > tolerance) return false;
   const float reference = reference_m(view, feature), ratio = static_cast<float>(options_.max_reference_ratio);
   return reference * ratio >= landmark.min_reference_m && reference <= landmark.max_reference_m * ratio;
@@ -260,8 +258,7 @@ void LandmarkFusion::add_appearance(const Keypoint& keypoint, const Descriptor& 
     landmark.samples.push_back({descriptor, keypoint.angle_rad});
     return;
   }
-  const std::uint64_t slot =
-      mix_bits((static_cast<std::uint64_t>(index) << 32) | landmark.num_observations) % landmark.num_observations;
+  const std::uint64_t slot = mix_bits((static_cast<std::uint64_t>(index) << 32) | landmark.num_observations) % landmark.num_observations;
   if (slot < kMaxSamples) landmark.samples[slot] = {descriptor, keypoint.angle_rad};
 }
 

@@ -55,8 +55,7 @@ void LandmarkFusion::set_viewing_directions(std::vector<MapLandmark>* landmarks)
     for (const ViewObservation& o : views_[view]) (*landmarks)[o.landmark].direction += to_camera(view, o.landmark);
   }
   for (MapLandmark& landmark : *landmarks) {
-    landmark.direction =
-        landmark.direction.norm() > 1e-6F ? Eigen::Vector3f(landmark.direction.normalized()) : Eigen::Vector3f(0, 0, -1);
+    landmark.direction = landmark.direction.norm() > 1e-6F ? Eigen::Vector3f(landmark.direction.normalized()) : Eigen::Vector3f(0, 0, -1);
   }
   for (std::size_t view = 0; view < views_.size(); ++view) {
     for (const ViewObservation& o : views_[view]) {

@@ -23,23 +23,24 @@ constexpr int kMaxPairs = 1000;
 /// A landmark as a keyframe sees it.
 struct SeenLandmark {
   std::uint32_t landmark = 0;
-  Eigen::Vector3d position_m;    ///< in `map`
+  Eigen::Vector3d position_m;  ///< in `map`
   Eigen::Vector3d p_camera;
-  double sigma_px = 1;           ///< of its keypoint
-  double position_sigma_m = 0;   ///< of the landmark itself
-  bool is_shared = false;        ///< other frames saw it, too
-  int cell = 0;                  ///< of the image
+  double sigma_px = 1;          ///< of its keypoint
+  double position_sigma_m = 0;  ///< of the landmark itself
+  bool is_shared = false;       ///< other frames saw it, too
+  int cell = 0;                 ///< of the image
 };
 
 struct View {
   Rigid3 T_map_camera;
-  std::vector<SeenLandmark> landmarks;     ///< ascending
-  std::vector<Descriptor> descriptors;     ///< the first of each
+  std::vector<SeenLandmark> landmarks;  ///< ascending
+  std::vector<Descriptor> descriptors;  ///< the first of each
 };
 
 double keypoint_sigma_px(const MapView& map, const map_format::LandmarkRecord& record, double distance_m, double pixel_sigma_px) {
   const MapInfo& info = map.info();
-  const double reference_m = std::sqrt(static_cast<double>(MapView::reference_m(record.min_reference)) * MapView::reference_m(record.max_reference));
+  const double reference_m =
+      std::sqrt(static_cast<double>(MapView::reference_m(record.min_reference)) * MapView::reference_m(record.max_reference));
   const double scale = static_cast<double>(info.orb_scale_factor);
   const double level = std::log(reference_m / distance_m) / std::log(scale);
   return pixel_sigma_px * std::pow(scale, std::clamp(level, 0.0, static_cast<double>(info.orb_num_levels) - 1));
@@ -103,7 +104,9 @@ void assess_precision(const View& view, const MapInfo& info, const Localizabilit
   const Eigen::LDLT<Matrix6d> ldlt(expected_information(view, info.camera, options));
   if (ldlt.info() != Eigen::Success || !(ldlt.rcond() > 1e-14)) return;
   const Matrix6d covariance = ldlt.solve(Matrix6d::Identity());
-  const auto worst = [](const Eigen::Matrix3d& block) { return std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(block).eigenvalues()[2]); };
+  const auto worst = [](const Eigen::Matrix3d& block) {
+    return std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(block).eigenvalues()[2]);
+  };
   result->position_sigma_m = std::hypot(std::sqrt(worst(covariance.topLeftCorner<3, 3>())), info.pose_sigma_m);
   result->rotation_sigma_rad = std::hypot(std::sqrt(worst(covariance.bottomRightCorner<3, 3>())), info.pose_sigma_rad);
 }
@@ -222,8 +225,10 @@ std::vector<KeyframeLocalizability> assess_localizability(const MapView& map, co
     assess_precision(views[k], map.info(), options, &place);
     place.rival = rivals.find(k);
     place.weakness = weakness_of(place, options);
-    if (place.weakness != FixWeakness::kNone) place.outlook = FixOutlook::kScanAgain;
-    else if (is_look_alike(place, options)) place.outlook = FixOutlook::kLookAlike;
+    if (place.weakness != FixWeakness::kNone)
+      place.outlook = FixOutlook::kScanAgain;
+    else if (is_look_alike(place, options))
+      place.outlook = FixOutlook::kLookAlike;
   }
   return places;
 }

@@ -29,42 +29,42 @@ enum class FixWeakness : std::uint8_t { kNone, kFewLandmarks, kPoorSpread, kImpr
 /// inliers, 78 % from 40, 52 % from 60, 32 % from 100; none of 13 where it has fewer than 150 landmarks, 1 of 18 where they fill less
 /// than 0.2 of the image, 19 of 29 up to 0.4, 94 % above.
 struct LocalizabilityOptions {
-  std::uint32_t min_observations = 2;   ///< frames that must have seen a landmark for a query to see it, too
-  double repeatability = 0.2;           ///< share of those that a query of another day finds again and matches
-  std::uint32_t min_landmarks = 100;    ///< a fifth of them found again are the 20 inliers that the localizer asks for
-  double min_spread = 0.25;             ///< of the image's cells that hold one
-  double max_position_sigma_m = 0.05;   ///< expected, largest axis
-  double pixel_sigma_px = 1.0;          ///< on pyramid level 0; grows with the level
+  std::uint32_t min_observations = 2;  ///< frames that must have seen a landmark for a query to see it, too
+  double repeatability = 0.2;          ///< share of those that a query of another day finds again and matches
+  std::uint32_t min_landmarks = 100;   ///< a fifth of them found again are the 20 inliers that the localizer asks for
+  double min_spread = 0.25;            ///< of the image's cells that hold one
+  double max_position_sigma_m = 0.05;  ///< expected, largest axis
+  double pixel_sigma_px = 1.0;         ///< on pyramid level 0; grows with the level
 
-  double rival_distance_m = 3.0;        ///< another place is at least this far away
-  double rival_turn_rad = 1.047;        ///< or turned by this, and
-  double max_common_share = 0.05;       ///< shares at most this part of the landmarks
-  double same_point_m = 1.0;            ///< landmarks closer than this are the same thing mapped twice, no look-alike
-  int max_rivals = 5;                   ///< most similar other places that are compared
-  int max_match_distance = 48;          ///< of 256 bits, mutually nearest
+  double rival_distance_m = 3.0;   ///< another place is at least this far away
+  double rival_turn_rad = 1.047;   ///< or turned by this, and
+  double max_common_share = 0.05;  ///< shares at most this part of the landmarks
+  double same_point_m = 1.0;       ///< landmarks closer than this are the same thing mapped twice, no look-alike
+  int max_rivals = 5;              ///< most similar other places that are compared
+  int max_match_distance = 48;     ///< of 256 bits, mutually nearest
   /// From here on a place looks alike: that many matches agree on one pose there (by chance up to 6), or this share of the
   /// descriptors matches (rooms of one building have up to 0.08 by chance, bays of one corridor 0.1 to 0.45).
   std::uint32_t min_rival_inliers = 40;
   double min_rival_share = 0.25;
-  double max_error_px = 5.0;            ///< of that pose
+  double max_error_px = 5.0;  ///< of that pose
 };
 
 /// The most deceiving other place.
 struct RivalPlace {
   std::uint32_t keyframe = 0;
-  double matched_share = 0;             ///< of the descriptors that match mutually
+  double matched_share = 0;  ///< of the descriptors that match mutually
   std::uint32_t num_matches = 0;
-  std::uint32_t num_inliers = 0;        ///< matches that agree on one pose of this view at that place
+  std::uint32_t num_inliers = 0;  ///< matches that agree on one pose of this view at that place
 };
 
 struct KeyframeLocalizability {
   FixOutlook outlook = FixOutlook::kLikely;
-  FixWeakness weakness = FixWeakness::kNone; ///< set with kScanAgain
-  std::uint32_t num_landmarks = 0;      ///< of the keyframe that other frames saw, too
-  double spread = 0;                    ///< share of the image's 8 x 6 cells that hold one
-  double position_sigma_m = 0;          ///< expected, of the worst axis; infinite where the view does not fix the pose
+  FixWeakness weakness = FixWeakness::kNone;  ///< set with kScanAgain
+  std::uint32_t num_landmarks = 0;            ///< of the keyframe that other frames saw, too
+  double spread = 0;                          ///< share of the image's 8 x 6 cells that hold one
+  double position_sigma_m = 0;                ///< expected, of the worst axis; infinite where the view does not fix the pose
   double rotation_sigma_rad = 0;
-  std::optional<RivalPlace> rival;      ///< the most similar other place, look-alike or not
+  std::optional<RivalPlace> rival;  ///< the most similar other place, look-alike or not
 };
 
 /// One entry a keyframe. A weak place is kScanAgain even where it looks like another one as well. The same map gives the same bits.

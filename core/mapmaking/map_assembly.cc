@@ -132,8 +132,7 @@ void MapAssembler::add_words(MapData* map) const {
   std::vector<Descriptor> descriptors;
   for (const MapLandmark& landmark : map->landmarks)
     descriptors.insert(descriptors.end(), landmark.descriptors.begin(), landmark.descriptors.end());
-  map->words =
-      train_vocabulary(descriptors, options_.num_words > 0 ? options_.num_words : default_num_words(map->landmarks.size()));
+  map->words = train_vocabulary(descriptors, options_.num_words > 0 ? options_.num_words : default_num_words(map->landmarks.size()));
   build_inverted_file(map);
 }
 
@@ -161,8 +160,7 @@ Result<MapData> MapAssembler::run() {
   for (int round = 0; round < kMaxBudgetRounds; ++round) {
     MapData map = select(kept, min_gain);
     if (map.landmarks.empty()) return nothing_left();
-    if (map.keyframes.size() > kMaxKeyframes)
-      return {ErrorCode::kUnsupported, "map: more than 65535 keyframes; select fewer frames"};
+    if (map.keyframes.size() > kMaxKeyframes) return {ErrorCode::kUnsupported, "map: more than 65535 keyframes; select fewer frames"};
     add_words(&map);
     map.pose_sigma_m = parts_.pose_sigma_m;
     map.pose_sigma_rad = parts_.pose_sigma_rad;
@@ -186,22 +184,20 @@ Result<MapData> MapAssembler::run() {
     kept = useful_landmarks(max_landmarks);
   }
   if (fitting) return std::move(*fitting);
-  return {ErrorCode::kInvalid, "map: " + std::to_string(options_.max_bytes) +
-                                   " bytes are not enough for a map of these frames; raise the byte budget"};
+  return {ErrorCode::kInvalid,
+          "map: " + std::to_string(options_.max_bytes) + " bytes are not enough for a map of these frames; raise the byte budget"};
 }
 
 Status MapAssembler::nothing_left() const {
-  return {ErrorCode::kInvalid,
-          options_.max_bytes > 0
-              ? "map: no landmark fits into " + std::to_string(options_.max_bytes) + " bytes; raise the byte budget"
-              : "map: no landmark is left; do the frames show textured surfaces with depth, and are the poses right?"};
+  return {ErrorCode::kInvalid, options_.max_bytes > 0
+                                   ? "map: no landmark fits into " + std::to_string(options_.max_bytes) + " bytes; raise the byte budget"
+                                   : "map: no landmark is left; do the frames show textured surfaces with depth, and are the poses right?"};
 }
 
 // Small maps consist of headers and words: the bytes a landmark mean something from a few thousand on.
 bool MapAssembler::has_long_lists(const MapData& map, double file_bytes) const {
   const auto num_landmarks = static_cast<double>(map.landmarks.size());
-  const double further =
-      options_.appearance_share > 0 ? kFurtherBytes * (static_cast<double>(num_descriptors_of(map)) - num_landmarks) : 0;
+  const double further = options_.appearance_share > 0 ? kFurtherBytes * (static_cast<double>(num_descriptors_of(map)) - num_landmarks) : 0;
   return file_bytes - further > options_.max_bytes_per_landmark * num_landmarks + kFixedBytes + kMinWordBytes;
 }
 

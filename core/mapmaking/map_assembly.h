@@ -27,9 +27,9 @@ struct MapBuildOptions {
   int min_observations = 2;            ///< landmarks seen by fewer frames are dropped where others are enough
   int landmarks_per_view = 1000;       ///< a landmark is not needed where all views that see it have this many
   double max_bytes_per_landmark = 60;  ///< of the whole file: bounds the further descriptors and the keyframes' lists
-  double appearance_share = 0;  ///< of the file, set aside for further descriptors; without max_bytes any > 0 keeps them all
-  bool fills_budget = false;    ///< choose again, more landmarks, where the first choice leaves much of max_bytes
-  int min_keyframe_gain = 20;   ///< a view that alone sees fewer landmarks is no keyframe; those landmarks go
+  double appearance_share = 0;         ///< of the file, set aside for further descriptors; without max_bytes any > 0 keeps them all
+  bool fills_budget = false;           ///< choose again, more landmarks, where the first choice leaves much of max_bytes
+  int min_keyframe_gain = 20;          ///< a view that alone sees fewer landmarks is no keyframe; those landmarks go
 };
 
 struct MapBuildReport {

@@ -46,8 +46,7 @@ struct MapBuilder::Impl {
   MapBuildReport report;
 };
 
-MapBuilder::MapBuilder(const RgbdCamera& camera, const MapBuildOptions& options)
-    : impl_(std::make_unique<Impl>(camera, options)) {}
+MapBuilder::MapBuilder(const RgbdCamera& camera, const MapBuildOptions& options) : impl_(std::make_unique<Impl>(camera, options)) {}
 MapBuilder::~MapBuilder() = default;
 
 Status MapBuilder::add_frame(const Frame& frame, const Rigid3& T_map_camera) {

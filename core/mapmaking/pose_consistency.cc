@@ -54,8 +54,8 @@ class Registration {
     const auto f = static_cast<std::size_t>(match.feature), l = static_cast<std::size_t>(match.landmark);
     const float z = from.depth_m[l];
     const float sigma_px = std::pow(1.2F, static_cast<float>(to.features.keypoints[f].level));
-    pairs_.add(to.normalized[f].x(), to.normalized[f].y(), z * from.normalized[l].x(), z * from.normalized[l].y(), z,
-               to.depth_m[f], sigma_px, match.distance, match.feature, match.landmark);
+    pairs_.add(to.normalized[f].x(), to.normalized[f].y(), z * from.normalized[l].x(), z * from.normalized[l].y(), z, to.depth_m[f],
+               sigma_px, match.distance, match.feature, match.landmark);
   }
 
   double focal_px_;
@@ -70,8 +70,7 @@ class Registration {
 
 double median_normalized_square(const std::vector<double>& errors, const std::vector<double>& variances, double added_variance) {
   std::vector<double> values;
-  for (std::size_t i = 0; i < errors.size(); ++i)
-    values.push_back(errors[i] * errors[i] / std::max(variances[i] + added_variance, 1e-300));
+  for (std::size_t i = 0; i < errors.size(); ++i) values.push_back(errors[i] * errors[i] / std::max(variances[i] + added_variance, 1e-300));
   return upper_median(std::move(values));
 }
 
@@ -90,8 +89,7 @@ double excess_sigma(const std::vector<double>& errors, const std::vector<double>
   return 0.5 * (low + high);
 }
 
-PoseConsistency::PoseConsistency(const RgbdCamera& camera, const PoseConsistencyOptions& options)
-    : camera_(camera), options_(options) {}
+PoseConsistency::PoseConsistency(const RgbdCamera& camera, const PoseConsistencyOptions& options) : camera_(camera), options_(options) {}
 
 // Keeps every stride-th view; when the store is full, every second of those goes and the stride doubles.
 void PoseConsistency::add_view(const ViewFeatures& view) {

@@ -67,7 +67,8 @@ constexpr std::array<std::uint64_t, 256> kSpreadBits = [] {
 class BitCounts {
  public:
   void add(const Descriptor& descriptor) {
-    for (std::size_t byte = 0; byte < small_.size(); ++byte) small_[byte] += kSpreadBits[descriptor.bits[byte / 8] >> (8 * (byte % 8)) & 0xFFU];
+    for (std::size_t byte = 0; byte < small_.size(); ++byte)
+      small_[byte] += kSpreadBits[descriptor.bits[byte / 8] >> (8 * (byte % 8)) & 0xFFU];
     ++num_;
     if (num_ % 255 == 0) carry();
   }
@@ -94,8 +95,7 @@ class BitCounts {
 };
 
 // Centres of the clusters.
-void move_to_majority(std::span<const Descriptor> descriptors, std::span<const NearestDescriptor> nearest,
-                      std::vector<Descriptor>* words) {
+void move_to_majority(std::span<const Descriptor> descriptors, std::span<const NearestDescriptor> nearest, std::vector<Descriptor>* words) {
   std::vector<BitCounts> counts(words->size());
   for (std::size_t i = 0; i < descriptors.size(); ++i) counts[nearest[i].index].add(descriptors[i]);
   for (std::size_t w = 0; w < words->size(); ++w) (*words)[w] = counts[w].majority((*words)[w]);
@@ -166,8 +166,7 @@ void build_inverted_file(MapData* map) {
     }
     for (const auto& [word, weight] : frequency[k]) {
       const long scaled = std::lround(255.0 * weight / std::sqrt(sum_squared));
-      map->inverted_file[word].push_back(
-          {static_cast<std::uint16_t>(k), static_cast<std::uint8_t>(std::clamp(scaled, 1L, 255L))});
+      map->inverted_file[word].push_back({static_cast<std::uint16_t>(k), static_cast<std::uint8_t>(std::clamp(scaled, 1L, 255L))});
     }
   }
 }

@@ -19,8 +19,7 @@ namespace camloc {
 [[nodiscard]] int default_num_words(std::size_t num_descriptors);
 
 /// At most `num_words` words, all different. Deterministic; seeded by k-means++ (Arthur and Vassilvitskii, 2007).
-[[nodiscard]] std::vector<Descriptor> train_vocabulary(std::span<const Descriptor> descriptors, int num_words,
-                                                       int max_iterations = 8);
+[[nodiscard]] std::vector<Descriptor> train_vocabulary(std::span<const Descriptor> descriptors, int num_words, int max_iterations = 8);
 
 /// log(1 + keyframes / keyframes with the word): never zero, so that a word seen everywhere still counts a little.
 [[nodiscard]] double inverse_document_frequency(std::size_t num_keyframes, std::size_t num_with_word);

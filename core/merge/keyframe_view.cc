@@ -18,8 +18,7 @@ KeyframeView view_of_keyframe(const MapData& map, std::uint32_t keyframe) {
     const Eigen::Vector3d p_camera = T_camera_map * landmark.position_m.cast<double>();
     if (!(p_camera.z() > 0.1)) continue;
     const Eigen::Vector2d pixel = camera.color.project(p_camera);
-    if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= camera.color.width - 1 && pixel.y() <= camera.color.height - 1))
-      continue;
+    if (!(pixel.x() >= 0 && pixel.y() >= 0 && pixel.x() <= camera.color.width - 1 && pixel.y() <= camera.color.height - 1)) continue;
     const float reference_m = std::sqrt(landmark.min_reference_m * landmark.max_reference_m);
     const float level = std::round(std::log(reference_m / static_cast<float>(p_camera.norm())) / log_scale);
     Keypoint keypoint;

@@ -64,8 +64,7 @@ struct Offset {
 
 class SameLandmarkFinder {
  public:
-  SameLandmarkFinder(const MapData& a, const MapData& b, const LandmarkMergingOptions& options)
-      : a_(a), b_(b), options_(options) {
+  SameLandmarkFinder(const MapData& a, const MapData& b, const LandmarkMergingOptions& options) : a_(a), b_(b), options_(options) {
     for (std::uint32_t i = 0; i < a.landmarks.size(); ++i) voxels_[voxel_key(voxel_of(a.landmarks[i].position_m))].push_back(i);
   }
 
@@ -88,9 +87,8 @@ class SameLandmarkFinder {
           pairs.push_back({256 + offset.px, {i, j, distance}});
       });
     }
-    std::sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) {
-      return std::tie(p.cost, p.same.b, p.same.a) < std::tie(q.cost, q.same.b, q.same.a);
-    });
+    std::sort(pairs.begin(), pairs.end(),
+              [](const Pair& p, const Pair& q) { return std::tie(p.cost, p.same.b, p.same.a) < std::tie(q.cost, q.same.b, q.same.a); });
     std::vector<std::uint8_t> is_taken_a(a_.landmarks.size(), 0), is_taken_b(b_.landmarks.size(), 0);
     std::vector<SameLandmark> result;
     for (const Pair& pair : pairs) {
@@ -107,8 +105,7 @@ class SameLandmarkFinder {
   void for_each_near(const Eigen::Vector3f& p, const Visit& visit) const {
     const Voxel center = voxel_of(p);
     for (int offset = 0; offset < 27; ++offset) {
-      const auto found =
-          voxels_.find(voxel_key({center[0] + offset % 3 - 1, center[1] + offset / 3 % 3 - 1, center[2] + offset / 9 - 1}));
+      const auto found = voxels_.find(voxel_key({center[0] + offset % 3 - 1, center[1] + offset / 3 % 3 - 1, center[2] + offset / 9 - 1}));
       if (found == voxels_.end()) continue;
       for (const std::uint32_t j : found->second) visit(j);
     }
@@ -161,8 +158,7 @@ void merge_views(const MapLandmark& from, float from_share, MapLandmark* into) {
 
 void merge_positions(const MapLandmark& from, MapLandmark* into) {
   const auto variance = [](const MapLandmark& l) { return std::max(l.position_sigma_m * l.position_sigma_m, 1e-6F); };
-  const auto n = static_cast<float>(std::max(1U, into->num_observations)),
-             m = static_cast<float>(std::max(1U, from.num_observations));
+  const auto n = static_cast<float>(std::max(1U, into->num_observations)), m = static_cast<float>(std::max(1U, from.num_observations));
   const float w = n / variance(*into), v = m / variance(from);
   const float apart = (from.position_m - into->position_m).squaredNorm() / 3;
   into->position_m = (w * into->position_m + v * from.position_m) / (w + v);
@@ -176,10 +172,10 @@ std::vector<SameLandmark> find_same_landmarks(const MapData& a, const MapData& b
   return SameLandmarkFinder(a, b, options).find();
 }
 
-std::uint32_t merge_landmark(const MapLandmark& from, const std::vector<std::uint32_t>& from_support,
-                             const LandmarkMergingOptions& options, MapLandmark* into, std::vector<std::uint32_t>* support) {
-  const float share = static_cast<float>(from.num_observations) /
-                      static_cast<float>(std::max(1U, from.num_observations + into->num_observations));
+std::uint32_t merge_landmark(const MapLandmark& from, const std::vector<std::uint32_t>& from_support, const LandmarkMergingOptions& options,
+                             MapLandmark* into, std::vector<std::uint32_t>* support) {
+  const float share =
+      static_cast<float>(from.num_observations) / static_cast<float>(std::max(1U, from.num_observations + into->num_observations));
   merge_views(from, share, into);
   merge_positions(from, into);
   into->num_observations += from.num_observations;
@@ -193,10 +189,8 @@ std::uint32_t merge_landmark(const MapLandmark& from, const std::vector<std::uin
     bool is_new;
   };
   std::vector<Appearance> all;
-  for (std::size_t d = 0; d < into->descriptors.size(); ++d)
-    all.push_back({into->descriptors[d], (*support)[d], into->angle_rad, false});
-  for (std::size_t d = 0; d < from.descriptors.size(); ++d)
-    all.push_back({from.descriptors[d], from_support[d], from.angle_rad, true});
+  for (std::size_t d = 0; d < into->descriptors.size(); ++d) all.push_back({into->descriptors[d], (*support)[d], into->angle_rad, false});
+  for (std::size_t d = 0; d < from.descriptors.size(); ++d) all.push_back({from.descriptors[d], from_support[d], from.angle_rad, true});
   std::stable_sort(all.begin(), all.end(), [](const Appearance& i, const Appearance& j) { return i.support > j.support; });
   std::vector<Appearance> kept;
   for (const Appearance& appearance : all) {

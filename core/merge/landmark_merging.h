@@ -33,14 +33,13 @@ struct SameLandmark {
   std::uint32_t b = 0, a = 0;
   int distance = 0;  ///< of the closest two appearances
 };
-[[nodiscard]] std::vector<SameLandmark> find_same_landmarks(const MapData& a, const MapData& b,
-                                                            const LandmarkMergingOptions& options);
+[[nodiscard]] std::vector<SameLandmark> find_same_landmarks(const MapData& a, const MapData& b, const LandmarkMergingOptions& options);
 
 /// A landmark with the observations of both: position by information, widened ranges and cone of views. `support` says how many
 /// observations stand behind each descriptor of `into`, on return those of the result, which come in that order. Returns how
 /// many descriptors of `from` became further appearances.
-std::uint32_t merge_landmark(const MapLandmark& from, const std::vector<std::uint32_t>& from_support,
-                             const LandmarkMergingOptions& options, MapLandmark* into, std::vector<std::uint32_t>* support);
+std::uint32_t merge_landmark(const MapLandmark& from, const std::vector<std::uint32_t>& from_support, const LandmarkMergingOptions& options,
+                             MapLandmark* into, std::vector<std::uint32_t>* support);
 
 /// What a finished map no longer says: a guess at the observations behind each of a landmark's descriptors.
 [[nodiscard]] std::vector<std::uint32_t> guess_support(const MapLandmark& landmark);

@@ -16,8 +16,8 @@ namespace camloc {
 namespace {
 
 constexpr std::uint32_t kMinShared = 10;
-constexpr std::size_t kMaxLinks = 8;                // of a keyframe to others, the strongest
-constexpr double kFixM = 0.01, kFixRad = 0.004;     // what the covariance of a fix leaves out: landmarks have common errors
+constexpr std::size_t kMaxLinks = 8;             // of a keyframe to others, the strongest
+constexpr double kFixM = 0.01, kFixRad = 0.004;  // what the covariance of a fix leaves out: landmarks have common errors
 constexpr double kKernelSigmas = 3;
 constexpr double kAxisM = 2;  // points this far along a keyframe's axes stand for its rotation
 

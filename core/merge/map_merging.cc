@@ -16,9 +16,8 @@ constexpr double kMaxFocalRatio = 1.25;  // beyond, features of the two cameras 
 Status check_pair(const MapData& a, const MapData& b) {
   if (std::abs(a.orb_scale_factor - b.orb_scale_factor) > 1e-4F || a.orb_num_levels != b.orb_num_levels) {
     char text[256];
-    std::snprintf(
-        text, sizeof text, "the maps have different image pyramids: %u levels of factor %.3f and %u of %.3f; build both alike",
-        a.orb_num_levels, static_cast<double>(a.orb_scale_factor), b.orb_num_levels, static_cast<double>(b.orb_scale_factor));
+    std::snprintf(text, sizeof text, "the maps have different image pyramids: %u levels of factor %.3f and %u of %.3f; build both alike",
+                  a.orb_num_levels, static_cast<double>(a.orb_scale_factor), b.orb_num_levels, static_cast<double>(b.orb_scale_factor));
     return {ErrorCode::kInvalid, text};
   }
   const double ratio = a.camera.color.mean_focal_px() / b.camera.color.mean_focal_px();
@@ -145,8 +144,7 @@ Result<MapData> merge_maps(const MapView& a, const MapData& b, const MapMergeOpt
   MapBuildOptions build = options.map;
   build.orb.scale_factor = first.orb_scale_factor;
   build.orb.num_levels = static_cast<int>(first.orb_num_levels);
-  if (progress && !progress("choosing landmarks and keyframes, training words", 0, 0))
-    return {ErrorCode::kUnavailable, "interrupted"};
+  if (progress && !progress("choosing landmarks and keyframes, training words", 0, 0)) return {ErrorCode::kUnavailable, "interrupted"};
   Result<MapData> merged = assemble_map(all.parts, build, &report->map);
   if (!merged.is_ok()) return merged.status();
   merged->name = first.name;

@@ -134,12 +134,11 @@ std::optional<KeyframeFix> MapRegistration::find_anywhere(std::uint32_t keyframe
     Registration found = registration_.unguided(query.view, &place_, keyframe);
     if (found.is_found) candidates.push_back(std::move(found));
   }
-  const auto best = std::max_element(candidates.begin(), candidates.end(), [](const Registration& i, const Registration& j) {
-    return i.num_inliers() < j.num_inliers();
-  });
+  const auto best = std::max_element(candidates.begin(), candidates.end(),
+                                     [](const Registration& i, const Registration& j) { return i.num_inliers() < j.num_inliers(); });
   if (best == candidates.end() || !is_convincing(*best, options_.place)) return std::nullopt;
-  const bool has_rival = std::any_of(candidates.begin(), candidates.end(),
-                                     [&](const Registration& other) { return is_rival(other, *best, options_.place); });
+  const bool has_rival =
+      std::any_of(candidates.begin(), candidates.end(), [&](const Registration& other) { return is_rival(other, *best, options_.place); });
   if (has_rival) return std::nullopt;
   return KeyframeFix{keyframe, best->T_map_camera, best->covariance, best->num_inliers()};
 }
@@ -156,8 +155,8 @@ std::optional<KeyframeFix> MapRegistration::find_around(std::uint32_t keyframe, 
   for (const auto& [distance, k] : near) keyframes.push_back(k);
   if (keyframes.empty()) return std::nullopt;
   assign_place(keyframes);
-  const Registration found = registration_.guided(view_of_keyframe(b_, keyframe).view, &place_, T_a_camera_predicted,
-                                                  options_.guided_radius_px, keyframe);
+  const Registration found =
+      registration_.guided(view_of_keyframe(b_, keyframe).view, &place_, T_a_camera_predicted, options_.guided_radius_px, keyframe);
   if (!is_convincing(found, options_.place)) return std::nullopt;
   return KeyframeFix{keyframe, found.T_map_camera, found.covariance, found.num_inliers()};
 }
@@ -180,8 +179,7 @@ bool MapRegistration::agree(const KeyframeFix& i, const KeyframeFix& j) const {
   const Rigid3 predicted = i.T_a_camera * T_i_j;
   const double apart_m = T_i_j.translation.norm();
   return (predicted.translation - j.T_a_camera.translation).norm() <= options_.agreement_m + options_.drift_per_m * apart_m &&
-         rotation_distance_rad(predicted.rotation, j.T_a_camera.rotation) <=
-             options_.agreement_rad + options_.drift_rad_per_m * apart_m;
+         rotation_distance_rad(predicted.rotation, j.T_a_camera.rotation) <= options_.agreement_rad + options_.drift_rad_per_m * apart_m;
 }
 
 bool MapRegistration::is_spread(const std::vector<KeyframeFix>& fixes) const {
@@ -213,13 +211,12 @@ Status MapRegistration::keep_consistent(std::vector<KeyframeFix>* fixes) const {
     const std::string why = group.size() < options_.min_fixes
                                 ? found + " agree on where they are, " + std::to_string(options_.min_fixes) + " are needed"
                                 : found + " agree on where they are, but all of one spot";
-    return {ErrorCode::kInvalid, "the two maps have no place in common that was seen with certainty (" + why +
-                                     "); record a stretch that both walks share"};
+    return {ErrorCode::kInvalid,
+            "the two maps have no place in common that was seen with certainty (" + why + "); record a stretch that both walks share"};
   }
   std::vector<KeyframeFix> others;
   for (const KeyframeFix& fix : *fixes) {
-    if (std::none_of(group.begin(), group.end(), [&](const KeyframeFix& g) { return g.keyframe == fix.keyframe; }))
-      others.push_back(fix);
+    if (std::none_of(group.begin(), group.end(), [&](const KeyframeFix& g) { return g.keyframe == fix.keyframe; })) others.push_back(fix);
   }
   const std::size_t num_rivals = group_of(others).size();
   if (static_cast<double>(num_rivals) > options_.max_rival_group_share * static_cast<double>(group.size())) {

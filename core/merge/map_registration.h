@@ -59,8 +59,8 @@ using MapMergeProgress = std::function<bool(const std::string& what, std::uint64
 /// One per keyframe of B that was found in A, ascending. `a_data` is what unpack_map(a) gives.
 /// Errors: kInvalid when too few keyframes agree on where they are, kUnavailable when `progress` said so.
 [[nodiscard]] Result<std::vector<KeyframeFix>> register_map(const MapView& a, const MapData& a_data, const MapData& b,
-                                                            const MapRegistrationOptions& options,
-                                                            const MapMergeProgress& progress, MapRegistrationReport* report);
+                                                            const MapRegistrationOptions& options, const MapMergeProgress& progress,
+                                                            MapRegistrationReport* report);
 
 /// Keyframes that share landmarks.
 struct SharedLandmarks {

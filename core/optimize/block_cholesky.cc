@@ -95,8 +95,10 @@ bool BlockCholesky::factorize(const double* upper_values) {
   for (const Target& target : targets_) {
     const Eigen::Map<const Matrix6d> source(upper_values);
     Eigen::Map<Matrix6d> block(values(target.entry));
-    if (target.is_transposed) block = source.transpose();
-    else block = source;
+    if (target.is_transposed)
+      block = source.transpose();
+    else
+      block = source;
     upper_values += 36;
   }
   first_column_.assign(num_blocks_, kNone);

@@ -22,14 +22,20 @@ void BlockPattern::add(std::uint32_t a, std::uint32_t b) {
 }
 
 BlockSystem::BlockSystem(std::uint32_t num_blocks)
-    : num_blocks_(num_blocks), is_sparse_(false),
-      blocks_(kBlockDoubles * num_blocks * (std::size_t{num_blocks} + 1) / 2), gradient_(num_blocks) {
+    : num_blocks_(num_blocks),
+      is_sparse_(false),
+      blocks_(kBlockDoubles * num_blocks * (std::size_t{num_blocks} + 1) / 2),
+      gradient_(num_blocks) {
   set_zero();
 }
 
 BlockSystem::BlockSystem(const BlockPattern& pattern)
-    : num_blocks_(pattern.num_blocks()), is_sparse_(true), gradient_(num_blocks_),
-      words_per_column_(pattern.words_per_column()), words_(pattern.words()), blocks_before_word_(words_.size()) {
+    : num_blocks_(pattern.num_blocks()),
+      is_sparse_(true),
+      gradient_(num_blocks_),
+      words_per_column_(pattern.words_per_column()),
+      words_(pattern.words()),
+      blocks_before_word_(words_.size()) {
   std::uint32_t count = 0;
   for (std::size_t i = 0; i < words_.size(); ++i) {
     blocks_before_word_[i] = count;

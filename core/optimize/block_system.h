@@ -39,8 +39,8 @@ class BlockSystem {
   static constexpr int kSize = 6;
   static constexpr std::size_t kBlockDoubles = kSize * kSize;
 
-  explicit BlockSystem(std::uint32_t num_blocks);       ///< dense: every block is there
-  explicit BlockSystem(const BlockPattern& pattern);    ///< sparse
+  explicit BlockSystem(std::uint32_t num_blocks);     ///< dense: every block is there
+  explicit BlockSystem(const BlockPattern& pattern);  ///< sparse
 
   [[nodiscard]] std::uint32_t num_blocks() const { return num_blocks_; }
   [[nodiscard]] bool is_sparse() const { return is_sparse_; }
@@ -48,9 +48,7 @@ class BlockSystem {
 
   /// Block of the upper triangle, row <= column, column-major; it must be in the pattern. Of a diagonal block the upper
   /// triangle counts.
-  [[nodiscard]] double* block(std::uint32_t row, std::uint32_t column) {
-    return blocks_.data() + kBlockDoubles * index_of(row, column);
-  }
+  [[nodiscard]] double* block(std::uint32_t row, std::uint32_t column) { return blocks_.data() + kBlockDoubles * index_of(row, column); }
   [[nodiscard]] Vector6d& gradient(std::uint32_t row) { return gradient_[row]; }
   [[nodiscard]] const Vector6d& gradient(std::uint32_t row) const { return gradient_[row]; }
 

@@ -21,9 +21,7 @@ namespace {
 constexpr double kFirstDamping = 1e-4, kMinDamping = 1e-7, kMaxDamping = 1e8;
 constexpr double kLessDamping = 0.1, kMoreDamping = 10;
 
-bool is_usable(const PointPrior& prior) {
-  return prior.position_m.allFinite() && prior.sigma_m > 0 && std::isfinite(prior.sigma_m);
-}
+bool is_usable(const PointPrior& prior) { return prior.position_m.allFinite() && prior.sigma_m > 0 && std::isfinite(prior.sigma_m); }
 
 bool is_before(const PointPrior& a, const PointPrior& b) { return a.landmark < b.landmark; }
 
@@ -80,11 +78,16 @@ class BundleAdjuster {
 };
 
 BundleAdjuster::BundleAdjuster(const BundleOptions& options, BundleProblem* problem)
-    : options_(options), model_(options), problem_(*problem), priors_(sorted_priors(problem->priors)),
+    : options_(options),
+      model_(options),
+      problem_(*problem),
+      priors_(sorted_priors(problem->priors)),
       num_landmarks_(static_cast<std::uint32_t>(problem->landmarks_m.size())) {
   for (const std::uint8_t is_fixed : problem->is_camera_fixed) free_index_.push_back(is_fixed != 0 ? kFixedCamera : num_free_++);
-  if (num_free_ > options.max_dense_cameras) reduced_.emplace(covisibility());
-  else reduced_.emplace(num_free_);
+  if (num_free_ > options.max_dense_cameras)
+    reduced_.emplace(covisibility());
+  else
+    reduced_.emplace(num_free_);
 }
 
 template <class Visit>
@@ -144,9 +147,8 @@ double BundleAdjuster::cost_of(const State& state) const {
   const std::vector<BundleCamera> cameras = cameras_of(state.T_map_camera);
   const LandmarkEliminator eliminator(model_, cameras);
   double cost = 0;
-  for_each_landmark([&](std::uint32_t i, const LandmarkObservations& landmark) {
-    cost += eliminator.cost(landmark, state.landmarks_m[i]);
-  });
+  for_each_landmark(
+      [&](std::uint32_t i, const LandmarkObservations& landmark) { cost += eliminator.cost(landmark, state.landmarks_m[i]); });
   for (const PoseGraphEdge& link : problem_.links) {
     const EdgeTerm term = edge_term(link, state.T_map_camera[link.i], state.T_map_camera[link.j]);
     cost += robust_link(term.residual.squaredNorm(), options_.link_kernel_sigmas).cost;
@@ -272,8 +274,7 @@ std::vector<BundleResidual> bundle_residuals(const BundleOptions& options, const
     const BundleTerms t = bundle_terms(model, o, cameras[o.camera], problem.landmarks_m[o.landmark].data());
     const double length = std::sqrt(t.du * t.du + t.dv * t.dv) * pixels_to_sigmas(model, o);
     BundleResidual& residual = residuals.emplace_back();
-    residual.pixel_sigmas = t.p[2] > kMinBundleDepth_m && length < kBehindCamera_sigmas ? static_cast<float>(length)
-                                                                                       : kBehindCamera_sigmas;
+    residual.pixel_sigmas = t.p[2] > kMinBundleDepth_m && length < kBehindCamera_sigmas ? static_cast<float>(length) : kBehindCamera_sigmas;
     if (has_depth(model, o) && std::isfinite(t.p[2])) {
       residual.depth_sigmas = static_cast<float>((o.depth_m - t.p[2]) / depth_sigma_m(model, o.depth_m));
     }

@@ -27,36 +27,36 @@ namespace camloc {
 /// A landmark as one camera saw it.
 struct BundleObservation {
   std::uint32_t camera = 0, landmark = 0;
-  float x = 0, y = 0;    ///< normalized image coordinates, undistorted
-  float depth_m = 0;     ///< measured along the optical axis, 0 = none
-  float sigma_px = 1;    ///< standard deviation of the feature position, pixels of level 0
+  float x = 0, y = 0;  ///< normalized image coordinates, undistorted
+  float depth_m = 0;   ///< measured along the optical axis, 0 = none
+  float sigma_px = 1;  ///< standard deviation of the feature position, pixels of level 0
 };
 
 /// A landmark whose position is known, e.g. a surveyed control point.
 struct PointPrior {
   std::uint32_t landmark = 0;
-  Eigen::Vector3d position_m;   ///< in `map`
-  double sigma_m = 0.01;        ///< per axis
+  Eigen::Vector3d position_m;  ///< in `map`
+  double sigma_m = 0.01;       ///< per axis
 };
 
 struct BundleProblem {
   std::vector<Rigid3> T_map_camera;
-  std::vector<std::uint8_t> is_camera_fixed;       ///< as many as cameras
-  std::vector<Eigen::Vector3d> landmarks_m;        ///< in `map`
-  std::vector<BundleObservation> observations;     ///< ordered by landmark
+  std::vector<std::uint8_t> is_camera_fixed;    ///< as many as cameras
+  std::vector<Eigen::Vector3d> landmarks_m;     ///< in `map`
+  std::vector<BundleObservation> observations;  ///< ordered by landmark
   std::vector<PointPrior> priors;
-  std::vector<PoseGraphEdge> links;                ///< between two cameras, measured otherwise than by landmarks
+  std::vector<PoseGraphEdge> links;  ///< between two cameras, measured otherwise than by landmarks
 };
 
 struct BundleOptions {
   double focal_px = 525;
   DepthNoise depth_noise;
-  bool use_depth = true;             ///< false: reprojection errors only, for comparison
-  double pixel_kernel_sigmas = 2.45; ///< width of the Huber kernel over |pixel residual| / sigma
-  double depth_kernel_sigmas = 2.0;  ///< and over the depth residual
-  double link_kernel_sigmas = 3.5;   ///< of Cauchy's kernel over the Mahalanobis distance of a link, which has six dimensions
+  bool use_depth = true;              ///< false: reprojection errors only, for comparison
+  double pixel_kernel_sigmas = 2.45;  ///< width of the Huber kernel over |pixel residual| / sigma
+  double depth_kernel_sigmas = 2.0;   ///< and over the depth residual
+  double link_kernel_sigmas = 3.5;    ///< of Cauchy's kernel over the Mahalanobis distance of a link, which has six dimensions
   int max_iterations = 20;
-  double min_relative_decrease = 1e-5;  ///< of the cost, below which the adjustment has converged
+  double min_relative_decrease = 1e-5;    ///< of the cost, below which the adjustment has converged
   std::uint32_t max_dense_cameras = 250;  ///< free cameras up to which the reduced system is dense
 };
 
@@ -66,13 +66,13 @@ struct BundleReport {
   std::uint32_t num_free_cameras = 0;
   bool is_sparse = false;
   bool is_converged = false;
-  bool is_stopped = false;           ///< on_iteration said so
+  bool is_stopped = false;  ///< on_iteration said so
 };
 
 /// What an observation is off by, in its own standard deviations.
 struct BundleResidual {
-  float pixel_sigmas = 0;   ///< |f (x - x_predicted)| / sigma_px; 1e9 behind the camera
-  float depth_sigmas = 0;   ///< signed, (depth - z) / sigma(z); 0 without depth
+  float pixel_sigmas = 0;  ///< |f (x - x_predicted)| / sigma_px; 1e9 behind the camera
+  float depth_sigmas = 0;  ///< signed, (depth - z) / sigma(z); 0 without depth
 };
 
 /// Called after every iteration with its number and cost; return false to stop with the best state so far.

@@ -24,9 +24,9 @@ inline constexpr std::uint32_t kFixedCamera = 0xffffffff;
 
 /// A camera as the loops read it.
 struct BundleCamera {
-  double axes[3][3];           ///< r0, r1, r2: axes of the camera in `map`
+  double axes[3][3];  ///< r0, r1, r2: axes of the camera in `map`
   double centre[3];
-  std::uint32_t free_index;    ///< row in the reduced system, or kFixedCamera
+  std::uint32_t free_index;  ///< row in the reduced system, or kFixedCamera
 
   BundleCamera(const Rigid3& T_map_camera, std::uint32_t index) : free_index(index) {
     const Eigen::Matrix3d R = T_map_camera.rotation.toRotationMatrix();
@@ -44,8 +44,12 @@ struct BundleModel {
   bool use_depth;
 
   explicit BundleModel(const BundleOptions& o)
-      : focal_px(o.focal_px), depth_constant_m(o.depth_noise.constant_m), depth_quadratic_per_m(o.depth_noise.quadratic_per_m),
-        pixel_kernel(o.pixel_kernel_sigmas), depth_kernel(o.depth_kernel_sigmas), use_depth(o.use_depth) {}
+      : focal_px(o.focal_px),
+        depth_constant_m(o.depth_noise.constant_m),
+        depth_quadratic_per_m(o.depth_noise.quadratic_per_m),
+        pixel_kernel(o.pixel_kernel_sigmas),
+        depth_kernel(o.depth_kernel_sigmas),
+        use_depth(o.use_depth) {}
 };
 
 /// Huber's kernel of a squared residual (Huber, "Robust estimation of a location parameter", 1964): cost, and weight in
@@ -60,7 +64,7 @@ inline double huber(double squared, double width, double* weight) {
 
 /// What an observation adds to the equations. Weights are 0 where a part takes no part.
 struct BundleTerms {
-  double p[3];          ///< landmark in the camera
+  double p[3];  ///< landmark in the camera
   double u, v, inverse_z;
   double du, dv, dz;    ///< predicted minus measured: normalized coordinates, metres
   double pixel_weight;  ///< robust weight * (f / sigma_px)^2
@@ -84,8 +88,8 @@ struct BundleTerms {
 
 /// An observation of a landmark that lies behind the camera, is more than 45 degrees off, or is not finite is left out: weights
 /// 0, and the cost it would have at 45 degrees, so that no step gains by pushing a landmark behind a camera.
-[[nodiscard]] inline BundleTerms bundle_terms(const BundleModel& model, const BundleObservation& observation,
-                                              const BundleCamera& camera, const double X[3]) {
+[[nodiscard]] inline BundleTerms bundle_terms(const BundleModel& model, const BundleObservation& observation, const BundleCamera& camera,
+                                              const double X[3]) {
   BundleTerms t;
   const double d0 = X[0] - camera.centre[0], d1 = X[1] - camera.centre[1], d2 = X[2] - camera.centre[2];
   for (int k = 0; k < 3; ++k) t.p[k] = camera.axes[k][0] * d0 + camera.axes[k][1] * d1 + camera.axes[k][2] * d2;

@@ -26,8 +26,10 @@ inline void add_product(const Block6x3& A, const Block6x3& B, double* block) {
     std::memcpy(c, block, sizeof(c));
     for (int i = 0; i < 3; ++i) {
       const Doubles product = a[0][i] * b0 + a[1][i] * b1 + a[2][i] * b2;
-      if constexpr (kSign > 0) c[i] += product;
-      else c[i] -= product;
+      if constexpr (kSign > 0)
+        c[i] += product;
+      else
+        c[i] -= product;
     }
     std::memcpy(block, c, sizeof(c));
   }
@@ -79,8 +81,8 @@ struct InverseFactor {
   double l00, l10, l11, l20, l21, l22;
 
   bool compute(const LandmarkBlock& C, double damping) {
-    constexpr double kMinPivot = 1e-13;    // relative: below, the pivot is rounding error
-    constexpr double kTraceShare = 1e-3;   // of the damping: holds a direction along an axis that nothing measures
+    constexpr double kMinPivot = 1e-13;   // relative: below, the pivot is rounding error
+    constexpr double kTraceShare = 1e-3;  // of the damping: holds a direction along an axis that nothing measures
     const double grow = 1.0 + damping, trace = C.c00 + C.c11 + C.c22, shift = damping * kTraceShare * trace;
     const double c00 = grow * C.c00 + shift, c11 = grow * C.c11 + shift, c22 = grow * C.c22 + shift;
     const double floor = kMinPivot * trace;

@@ -100,8 +100,10 @@ void PoseGraphSolver::assemble() {
     add_term(term.J_j, term.residual, weight, j);
     if (i == kFixed || j == kFixed) continue;
     Eigen::Map<Matrix6d> block(system_.block(std::min(i, j), std::max(i, j)));
-    if (i < j) block.noalias() += weight * term.J_i.transpose() * term.J_j;
-    else block.noalias() += weight * term.J_j.transpose() * term.J_i;
+    if (i < j)
+      block.noalias() += weight * term.J_i.transpose() * term.J_j;
+    else
+      block.noalias() += weight * term.J_j.transpose() * term.J_i;
   }
   for (const PoseGraphPrior& prior : graph_.priors) {
     const PriorTerm term = prior_term(prior, graph_.T_map_pose[prior.i]);

@@ -28,7 +28,7 @@ struct PoseGraphPrior {
 
 struct PoseGraph {
   std::vector<Rigid3> T_map_pose;
-  std::vector<std::uint8_t> is_fixed;   ///< as many as poses
+  std::vector<std::uint8_t> is_fixed;  ///< as many as poses
   std::vector<PoseGraphEdge> edges;
   std::vector<PoseGraphPrior> priors;
 };
@@ -36,7 +36,7 @@ struct PoseGraph {
 struct PoseGraphOptions {
   int max_iterations = 30;
   double min_relative_decrease = 1e-6;
-  double kernel_sigmas = 0;   ///< width of the Cauchy kernel over the Mahalanobis distance of edges and priors; 0 = none
+  double kernel_sigmas = 0;  ///< width of the Cauchy kernel over the Mahalanobis distance of edges and priors; 0 = none
 };
 
 struct PoseGraphReport {

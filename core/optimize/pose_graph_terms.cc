@@ -22,8 +22,7 @@ Eigen::Matrix3d inverse_right_jacobian(const Eigen::Vector3d& r) {
   const Eigen::Matrix3d cross = cross_matrix(r);
   const double angle_squared = r.squaredNorm(), angle = std::sqrt(angle_squared);
   // The series below 1e-2 rad: the closed form loses digits there.
-  const double factor = angle < 1e-2 ? 1.0 / 12.0 + angle_squared / 720.0
-                                     : (1.0 - 0.5 * angle / std::tan(0.5 * angle)) / angle_squared;
+  const double factor = angle < 1e-2 ? 1.0 / 12.0 + angle_squared / 720.0 : (1.0 - 0.5 * angle / std::tan(0.5 * angle)) / angle_squared;
   return Eigen::Matrix3d::Identity() + 0.5 * cross + factor * cross * cross;
 }
 

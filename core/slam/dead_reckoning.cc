@@ -9,7 +9,7 @@ namespace camloc {
 namespace {
 
 constexpr double kMaxLooseness = 20;
-constexpr double kLinkM = 0.006, kLinkRad = 0.005;   // what a link of full strength is good for
+constexpr double kLinkM = 0.006, kLinkRad = 0.005;  // what a link of full strength is good for
 
 double looseness_of(std::uint32_t num_shared) { return std::clamp(150.0 / std::max(num_shared, 1U), 1.0, kMaxLooseness); }
 
@@ -28,7 +28,7 @@ Matrix6d link_covariance(const Rigid3& T_i_j, std::uint32_t num_shared) {
 
 void DeadReckoning::note_links(std::uint32_t keyframe) {
   const auto neighbours = map_->covisible(keyframe, 1);
-  if (looseness_.size() <= keyframe) looseness_.resize(keyframe + 1, kMaxLooseness);   // the first of a segment has no link
+  if (looseness_.size() <= keyframe) looseness_.resize(keyframe + 1, kMaxLooseness);  // the first of a segment has no link
   looseness_[keyframe] = looseness_of(neighbours.empty() ? 0 : neighbours.front().num_shared);
 }
 
@@ -92,11 +92,13 @@ double DeadReckoning::strain(std::uint32_t keyframe, std::uint32_t place, const 
   }
   const SegmentBegin* begin = begin_between(place, keyframe);
   if (begin == nullptr) return 0;
-  const Rigid3 T_correction = T_map_keyframe * T_map_now.inverse();   // from the segment of the keyframe to that of the place
+  const Rigid3 T_correction = T_map_keyframe * T_map_now.inverse();  // from the segment of the keyframe to that of the place
   Eigen::Vector3d lost = map_->keyframe(begin->keyframe_before).view.T_map_camera * begin->T_before_camera.translation;
   Eigen::Vector3d found = map_->keyframe(begin->first_keyframe).view.T_map_camera.translation;
-  if (map_->keyframe(begin->keyframe_before).segment == map_->keyframe(keyframe).segment) lost = T_correction * lost;
-  else found = T_correction * found;
+  if (map_->keyframe(begin->keyframe_before).segment == map_->keyframe(keyframe).segment)
+    lost = T_correction * lost;
+  else
+    found = T_correction * found;
   return (found - lost).norm() <= options_.reach_m + options_.reach_m_s * begin->gap_s ? 0 : 10;
 }
 

@@ -17,8 +17,8 @@ namespace camloc {
 struct SegmentBegin {
   std::uint32_t first_keyframe = 0;
   bool has_before = false;
-  std::uint32_t keyframe_before = 0;           ///< of the segment before
-  Rigid3 T_before_camera;                      ///< last pose known, relative to that keyframe
+  std::uint32_t keyframe_before = 0;  ///< of the segment before
+  Rigid3 T_before_camera;             ///< last pose known, relative to that keyframe
   double gap_s = 0;
 };
 
@@ -56,7 +56,7 @@ class DeadReckoning {
   LoopOptions options_;
   const SlamMap* map_;
   std::vector<SegmentBegin> begins_;
-  std::vector<double> looseness_;   ///< of each keyframe's link to those before it; 1 = strong
+  std::vector<double> looseness_;  ///< of each keyframe's link to those before it; 1 = strong
 };
 
 }  // namespace camloc

@@ -30,9 +30,11 @@ void DepthBridge::forget() {
   anchor_ = {};
 }
 
-std::optional<DepthBridge::Step> DepthBridge::step(std::int64_t stamp_ns, const ViewThumbnail& thumbnail, const Rigid3& T_begin_camera_expected) {
+std::optional<DepthBridge::Step> DepthBridge::step(std::int64_t stamp_ns, const ViewThumbnail& thumbnail,
+                                                   const Rigid3& T_begin_camera_expected) {
   const double dt_s = seconds(stamp_ns - last_ns_);
-  if (anchor_.empty() || thumbnail.empty() || !(dt_s > 0 && dt_s <= options_.max_gap_s) || seconds(stamp_ns - begin_ns_) > options_.max_length_s) {
+  if (anchor_.empty() || thumbnail.empty() || !(dt_s > 0 && dt_s <= options_.max_gap_s) ||
+      seconds(stamp_ns - begin_ns_) > options_.max_length_s) {
     forget();
     return std::nullopt;
   }
@@ -51,7 +53,8 @@ std::optional<DepthBridge::Step> DepthBridge::step(std::int64_t stamp_ns, const 
   Step now;
   now.T_begin_camera = anchor_step_.T_begin_camera * aligned.T_a_b;
   now.covariance = anchor_step_.covariance + rotate_covariance(anchor_step_.T_begin_camera.rotation, aligned.covariance);
-  if (worst_sigma(now.covariance.topLeftCorner<3, 3>()) > options_.max_sigma_m || worst_sigma(now.covariance.bottomRightCorner<3, 3>()) > options_.max_sigma_rad) {
+  if (worst_sigma(now.covariance.topLeftCorner<3, 3>()) > options_.max_sigma_m ||
+      worst_sigma(now.covariance.bottomRightCorner<3, 3>()) > options_.max_sigma_rad) {
     forget();
     return std::nullopt;
   }

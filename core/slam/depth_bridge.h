@@ -16,10 +16,10 @@ namespace camloc {
 
 struct DepthBridgeOptions {
   DenseAlignmentOptions alignment;
-  double max_gap_s = 0.25;                  ///< between two views: farther apart, they are no prediction of each other
+  double max_gap_s = 0.25;  ///< between two views: farther apart, they are no prediction of each other
   double max_length_s = 4.0;
-  double max_sigma_m = 0.25, max_sigma_rad = 0.10;       ///< since the last tracked view, in the worst direction
-  double min_anchor_overlap = 0.6;          ///< below it, the next view is aligned with this one instead of an earlier one
+  double max_sigma_m = 0.25, max_sigma_rad = 0.10;  ///< since the last tracked view, in the worst direction
+  double min_anchor_overlap = 0.6;                  ///< below it, the next view is aligned with this one instead of an earlier one
   // How far constant velocity may be off after a time dt: half an acceleration times dt^2, and a little at once.
   double acceleration_m_s2 = 3.0, acceleration_rad_s2 = 10.0;
   double jitter_m = 0.003, jitter_rad = 0.003;
@@ -37,7 +37,7 @@ class DepthBridge {
 
   struct Step {
     Rigid3 T_begin_camera;
-    Matrix6d covariance = Matrix6d::Identity();   ///< of pose_error() of T_begin_camera, axes of the begin
+    Matrix6d covariance = Matrix6d::Identity();  ///< of pose_error() of T_begin_camera, axes of the begin
   };
   /// The view that followed, given where it is expected; nothing where it does not fit or too little is known by now, and then
   /// the bridge has ended.
@@ -52,7 +52,7 @@ class DepthBridge {
   std::int64_t begin_ns_ = 0, last_ns_ = 0;
   int num_steps_ = 0;
   ViewThumbnail anchor_;
-  Step anchor_step_, last_;                        ///< where the anchor and the last view are
+  Step anchor_step_, last_;  ///< where the anchor and the last view are
 };
 
 }  // namespace camloc

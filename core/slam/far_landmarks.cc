@@ -45,7 +45,8 @@ bool is_sound(const FarLandmarkOptions& options, const SlamMap& map, const ViewF
   const double ratio = to_a.norm() * map.scale_of_level(a.features.keypoints[feature_a].level) /
                        (to_b.norm() * map.scale_of_level(b.features.keypoints[feature_b].level));
   if (ratio > 1.6 || ratio < 1 / 1.6) return false;
-  return error_sigmas(map, a, feature_a, p_map) <= options.max_error_sigmas && error_sigmas(map, b, feature_b, p_map) <= options.max_error_sigmas;
+  return error_sigmas(map, a, feature_a, p_map) <= options.max_error_sigmas &&
+         error_sigmas(map, b, feature_b, p_map) <= options.max_error_sigmas;
 }
 
 std::vector<std::uint32_t> partners(const FarLandmarkOptions& options, std::uint32_t keyframe, const SlamMap& map) {
@@ -61,7 +62,7 @@ std::vector<std::uint32_t> partners(const FarLandmarkOptions& options, std::uint
     if (baseline < next_baseline || axis.dot(T_map_other.rotation * Eigen::Vector3d::UnitZ()) < 0.9) continue;
     result.push_back(keyframe - back);
     if (result.size() == options.num_neighbours) break;
-    next_baseline = 1.8 * baseline;   // near ones for what is near, far ones for what is far
+    next_baseline = 1.8 * baseline;  // near ones for what is near, far ones for what is far
   }
   return result;
 }
@@ -79,7 +80,8 @@ int add_with_partner(const FarLandmarkOptions& options, std::uint32_t keyframe, 
     const ViewFeatures& a = map->keyframe(keyframe).view;
     const ViewFeatures& b = map->keyframe(partner).view;
     const std::uint32_t feature_a = here.index[i], feature_b = there.index[n.index];
-    const auto point = triangulate(a.T_map_camera, a.normalized[feature_a].cast<double>(), b.T_map_camera, b.normalized[feature_b].cast<double>());
+    const auto point =
+        triangulate(a.T_map_camera, a.normalized[feature_a].cast<double>(), b.T_map_camera, b.normalized[feature_b].cast<double>());
     if (!point || !is_sound(options, *map, a, feature_a, b, feature_b, *point)) continue;
     map->add_landmark(*point, {partner, feature_b}, {keyframe, feature_a});
     ++num_added;

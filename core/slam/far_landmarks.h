@@ -13,14 +13,14 @@
 namespace camloc {
 
 struct FarLandmarkOptions {
-  std::size_t num_neighbours = 4;      ///< keyframes compared with
-  std::uint32_t max_keyframe_gap = 30; ///< only this far back in the recording
-  double min_baseline_m = 0.25;        ///< between the two camera centres
-  double min_parallax_rad = 0.012;     ///< angle under which the point sees them
+  std::size_t num_neighbours = 4;       ///< keyframes compared with
+  std::uint32_t max_keyframe_gap = 30;  ///< only this far back in the recording
+  double min_baseline_m = 0.25;         ///< between the two camera centres
+  double min_parallax_rad = 0.012;      ///< angle under which the point sees them
   double max_distance_m = 40;
-  int max_distance_bits = 50;          ///< Hamming
+  int max_distance_bits = 50;  ///< Hamming
   double max_ratio = 0.85;
-  double max_error_sigmas = 2.5;       ///< of the reprojection in both views
+  double max_error_sigmas = 2.5;  ///< of the reprojection in both views
 };
 
 /// The point closest to two rays, in the frame of the poses; nothing where it is behind a camera. Rays are (x/z, y/z, 1).

@@ -32,7 +32,7 @@ class LandmarkSet {
   [[nodiscard]] std::span<const ProjectedLandmark> project(const Rigid3& T_map_camera, float radius_px, const ProjectionLimits& limits);
 
   [[nodiscard]] std::size_t size() const { return ids_.size(); }
-  [[nodiscard]] std::uint32_t id(std::size_t i) const { return ids_[i]; }   ///< index in the map
+  [[nodiscard]] std::uint32_t id(std::size_t i) const { return ids_[i]; }  ///< index in the map
   [[nodiscard]] const Eigen::Vector3d& position_m(std::size_t i) const { return positions_m_[i]; }
   [[nodiscard]] float angle_rad(std::size_t i) const { return angles_rad_[i]; }
   [[nodiscard]] std::span<const Descriptor> descriptors() const { return descriptors_; }

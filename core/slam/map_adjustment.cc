@@ -57,8 +57,8 @@ MapFit adjust_locally(const BundleOptions& bundle, const LocalAdjustmentOptions&
   return fit;
 }
 
-MapFit adjust_globally(const BundleOptions& bundle, std::uint32_t segment, const MapEvidence& evidence,
-                       double max_pixel_sigmas, SlamMap* map, const BundleCallback& on_iteration) {
+MapFit adjust_globally(const BundleOptions& bundle, std::uint32_t segment, const MapEvidence& evidence, double max_pixel_sigmas,
+                       SlamMap* map, const BundleCallback& on_iteration) {
   std::uint64_t num_removed = 0;
   MapFit fit;
   for (int round = 0; round < 2; ++round) {

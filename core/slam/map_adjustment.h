@@ -13,8 +13,8 @@ namespace camloc {
 /// How well keyframes and landmarks agree after an adjustment.
 struct MapFit {
   std::uint64_t num_sightings = 0, num_removed = 0;
-  double median_px = 0, p90_px = 0;              ///< reprojection error, pixels of level 0
-  double median_depth_sigmas = 0;                ///< |depth residual|, of the noise that the adjustment was given
+  double median_px = 0, p90_px = 0;  ///< reprojection error, pixels of level 0
+  double median_depth_sigmas = 0;    ///< |depth residual|, of the noise that the adjustment was given
   double median_depth_m = 0;
 };
 
@@ -24,7 +24,7 @@ MapFit adjust_locally(const BundleOptions& bundle, const LocalAdjustmentOptions&
 
 /// Adjusts all keyframes of a segment twice, without the worst sightings the second time. Control landmarks hold the map where
 /// they were surveyed; with three or more of them the first keyframe moves, too.
-MapFit adjust_globally(const BundleOptions& bundle, std::uint32_t segment, const MapEvidence& evidence,
-                       double max_pixel_sigmas, SlamMap* map, const BundleCallback& on_iteration = {});
+MapFit adjust_globally(const BundleOptions& bundle, std::uint32_t segment, const MapEvidence& evidence, double max_pixel_sigmas,
+                       SlamMap* map, const BundleCallback& on_iteration = {});
 
 }  // namespace camloc

@@ -108,8 +108,8 @@ MapExtract extract_window(const LocalAdjustmentOptions& options, std::uint32_t k
   for (const std::uint32_t k : outside) add_camera(map, k, true, &extract);
   for (const std::uint32_t index : landmarks) add_landmark(map, index, &extract);
   auto& fixed = extract.problem.is_camera_fixed;
-  if (std::find(fixed.begin(), fixed.end(), 1) == fixed.end()) fixed[static_cast<std::size_t>(
-      std::min_element(extract.keyframes.begin(), extract.keyframes.end()) - extract.keyframes.begin())] = 1;
+  if (std::find(fixed.begin(), fixed.end(), 1) == fixed.end())
+    fixed[static_cast<std::size_t>(std::min_element(extract.keyframes.begin(), extract.keyframes.end()) - extract.keyframes.begin())] = 1;
   return extract;
 }
 
@@ -141,7 +141,8 @@ void write_back(const MapExtract& extract, SlamMap* map) {
       if (landmark.sightings.size() == 1) landmark.position_m = T_new_old * landmark.position_m;
     }
   }
-  for (std::size_t i = 0; i < extract.landmarks.size(); ++i) map->landmark(extract.landmarks[i]).position_m = extract.problem.landmarks_m[i];
+  for (std::size_t i = 0; i < extract.landmarks.size(); ++i)
+    map->landmark(extract.landmarks[i]).position_m = extract.problem.landmarks_m[i];
 }
 
 }  // namespace camloc

@@ -16,19 +16,19 @@ namespace camloc {
 struct LocalAdjustmentOptions {
   std::size_t num_free_keyframes = 8;
   std::size_t num_fixed_keyframes = 16;
-  std::uint32_t min_shared = 15;   ///< landmarks that make a keyframe a neighbour
+  std::uint32_t min_shared = 15;  ///< landmarks that make a keyframe a neighbour
   int max_iterations = 5;
-  double max_pixel_sigmas = 3.0;   ///< sightings farther off afterwards are removed
+  double max_pixel_sigmas = 3.0;  ///< sightings farther off afterwards are removed
 };
 
 /// A surveyed point that keyframes see. It is no landmark of the map: nobody finds it by its looks.
 struct ControlLandmark {
-  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();   ///< as surveyed, in the frame of the segment
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  ///< as surveyed, in the frame of the segment
   double sigma_m = 0.01;
   struct Seen {
     std::uint32_t keyframe = 0;
-    float x = 0, y = 0;       ///< normalized image coordinates
-    float depth_m = 0;        ///< 0 = none
+    float x = 0, y = 0;  ///< normalized image coordinates
+    float depth_m = 0;   ///< 0 = none
     float sigma_px = 1;
   };
   std::vector<Seen> seen;
@@ -37,7 +37,7 @@ struct ControlLandmark {
 /// What is known about the keyframes of a map besides their sightings.
 struct MapEvidence {
   std::span<const ControlLandmark> controls;
-  std::span<const PoseGraphEdge> links;   ///< between keyframes, e.g. by dense alignment
+  std::span<const PoseGraphEdge> links;  ///< between keyframes, e.g. by dense alignment
 };
 
 /// A bundle problem and which part of the map each of its unknowns is.
@@ -45,8 +45,8 @@ struct MapExtract {
   static constexpr std::uint32_t kAbsent = 0xFFFFFFFF;
 
   BundleProblem problem;
-  std::vector<std::uint32_t> keyframes, landmarks;   ///< index in the map of each camera and landmark
-  std::vector<std::uint32_t> camera_of_keyframe;     ///< kAbsent where it takes no part
+  std::vector<std::uint32_t> keyframes, landmarks;  ///< index in the map of each camera and landmark
+  std::vector<std::uint32_t> camera_of_keyframe;    ///< kAbsent where it takes no part
 };
 
 /// The keyframe and its best neighbours, what they see, and fixed, other keyframes that see it.

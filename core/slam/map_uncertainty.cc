@@ -14,7 +14,9 @@ namespace {
 /// Which half a landmark or a link goes to.
 struct Split {
   std::uint64_t seed = 0;
-  [[nodiscard]] bool is_in(bool second_half, std::uint64_t index) const { return ((mix_bits(seed ^ mix_bits(index)) & 1U) != 0) == second_half; }
+  [[nodiscard]] bool is_in(bool second_half, std::uint64_t index) const {
+    return ((mix_bits(seed ^ mix_bits(index)) & 1U) != 0) == second_half;
+  }
 };
 
 // Landmarks that are left without observations take no part.
@@ -33,7 +35,7 @@ BundleProblem half_of(const MapExtract& extract, const Split& split, bool second
 }
 
 struct SquaredErrors {
-  double m2 = 0, rad2 = 0;   ///< sums over cameras and axes
+  double m2 = 0, rad2 = 0;  ///< sums over cameras and axes
 };
 
 // What is left between two sets of poses after the rigid motion that fits them best, orientations as positions a metre away.

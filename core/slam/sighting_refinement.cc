@@ -11,14 +11,14 @@
 namespace camloc {
 namespace {
 
-constexpr double kMaxMagnification = 2.0;   // of area and its inverse, between two patches
+constexpr double kMaxMagnification = 2.0;  // of area and its inverse, between two patches
 
 /// A sighting and what belongs to it.
 struct Seen {
   const SlamKeyframe& keyframe;
   std::uint32_t feature;
-  double scale;                     ///< of its level
-  Eigen::Vector3d p_camera;         ///< the landmark
+  double scale;              ///< of its level
+  Eigen::Vector3d p_camera;  ///< the landmark
 };
 
 Seen seen_by(const SlamMap& map, const Sighting& sighting, const Eigen::Vector3d& p_map) {
@@ -38,7 +38,8 @@ std::size_t choose_reference(const SlamMap& map, const SlamLandmark& landmark) {
     const Eigen::Vector3d to_camera = keyframe.view.T_map_camera.translation - landmark.position_m;
     const double distance = to_camera.norm();
     const double turned = std::acos(std::clamp(to_camera.dot(landmark.direction) / distance, -1.0, 1.0));
-    const double scaled = std::abs(std::log(distance * map.scale_of_level(keyframe.view.features.keypoints[sighting.feature].level)) - middle);
+    const double scaled =
+        std::abs(std::log(distance * map.scale_of_level(keyframe.view.features.keypoints[sighting.feature].level)) - middle);
     if (turned + scaled < least) {
       least = turned + scaled;
       best = i;

@@ -3,7 +3,8 @@
 //
 // Sightings to a fraction of a pixel. A detector puts a feature on a pixel of its level, and in each view a little elsewhere on
 // the surface; here every sighting of a landmark is moved to the point that one of them, the reference, shows. Reprojection
-// errors go down to a third on the synthetic scene, whose trajectory becomes more accurate, and by a quarter to a third on Kinect recordings.
+// errors go down to a third on the synthetic scene, whose trajectory becomes more accurate, and by a quarter to a third on Kinect
+// recordings.
 #pragma once
 
 #include <array>
@@ -16,8 +17,8 @@ namespace camloc {
 
 /// How many sightings came to which end; references are not counted.
 struct SightingRefinementReport {
-  std::uint64_t num_references = 0;                  ///< landmarks with two sightings or more
-  std::array<std::uint64_t, 5> num_by_verdict{};     ///< of the other sightings, by PatchVerdict
+  std::uint64_t num_references = 0;               ///< landmarks with two sightings or more
+  std::array<std::uint64_t, 5> num_by_verdict{};  ///< of the other sightings, by PatchVerdict
   [[nodiscard]] std::uint64_t num_refined() const { return num_by_verdict[0]; }
 };
 

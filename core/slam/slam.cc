@@ -19,7 +19,7 @@ constexpr std::uint32_t kStrongLink = 150;
 
 // Bridged views become keyframes when they show something new: so far from the last one.
 constexpr double kBridgedKeyframeM = 0.15, kBridgedKeyframeRad = 0.1;
-constexpr std::uint32_t kBridgedNeighbours = 3;   // keyframes before it that its few features are compared with
+constexpr std::uint32_t kBridgedNeighbours = 3;  // keyframes before it that its few features are compared with
 constexpr float kBridgedRadiusPx = 8;
 
 RegistrationOptions registration_options(const SlamOptions& options) {
@@ -56,8 +56,10 @@ ViewReport Slam::place_view(std::uint64_t frame, const ViewFeatures& view, const
   ViewReport report;
   ++counts_.num_views;
   if (map_.keyframes().empty()) {
-    if (begin_segment(frame, view, &report)) begin_bridge(view.stamp_ns, thumbnail);
-    else ++counts_.num_lost;
+    if (begin_segment(frame, view, &report))
+      begin_bridge(view.stamp_ns, thumbnail);
+    else
+      ++counts_.num_lost;
     return report;
   }
   const bool was_lost = num_lost_in_a_row_ > 0;

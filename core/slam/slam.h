@@ -31,10 +31,10 @@
 namespace camloc {
 
 struct SlamOptions {
-  float scale_factor = 1.2F;           ///< of the features' pyramid
+  float scale_factor = 1.2F;  ///< of the features' pyramid
   int num_levels = 8;
   int max_features = 1000;
-  bool use_depth_in_tracking = true;   ///< these two are for comparison: depth wins
+  bool use_depth_in_tracking = true;  ///< these two are for comparison: depth wins
   bool use_depth_in_adjustment = true;
   bool close_loops = true;
   TrackerOptions tracker;
@@ -44,13 +44,13 @@ struct SlamOptions {
   std::size_t num_fused_neighbours = 5;
   DepthBridgeOptions bridge;
   DenseLinkOptions links;
-  int max_lost_views = 10;             ///< after so many in a row a new segment begins
-  std::uint32_t min_segment_features = 200;  ///< features with depth that a view needs to begin one, or to end a bridge
-  std::vector<std::uint64_t> required_keyframes;   ///< frames that become keyframes whatever they show, ascending
-  bool refine_sightings = true;        ///< to a fraction of a pixel before the final adjustment, where views have patches
+  int max_lost_views = 10;                        ///< after so many in a row a new segment begins
+  std::uint32_t min_segment_features = 200;       ///< features with depth that a view needs to begin one, or to end a bridge
+  std::vector<std::uint64_t> required_keyframes;  ///< frames that become keyframes whatever they show, ascending
+  bool refine_sightings = true;                   ///< to a fraction of a pixel before the final adjustment, where views have patches
   PatchAlignmentOptions patches;
   MapUncertaintyOptions uncertainty;
-  double max_pixel_sigmas = 2.45;      ///< sightings farther off after the final adjustment are removed
+  double max_pixel_sigmas = 2.45;  ///< sightings farther off after the final adjustment are removed
 };
 
 enum class ViewState : std::uint8_t { kTracked, kLost };
@@ -60,15 +60,15 @@ struct ViewReport {
   ViewState state = ViewState::kLost;
   int num_inliers = 0;
   bool is_keyframe = false;
-  bool is_bridged = false;             ///< tracked, but by dense alignment: it shows too few features
-  bool is_found_back = false;          ///< the first one after a loss
+  bool is_bridged = false;     ///< tracked, but by dense alignment: it shows too few features
+  bool is_found_back = false;  ///< the first one after a loss
   bool has_begun_segment = false;
   LoopReport loop;
 };
 
 struct SlamCounts {
-  std::uint32_t num_views = 0, num_lost = 0, num_losses = 0;   ///< views without pose; how often it happened
-  std::uint32_t num_bridged = 0;                                ///< views whose pose is from dense alignment
+  std::uint32_t num_views = 0, num_lost = 0, num_losses = 0;  ///< views without pose; how often it happened
+  std::uint32_t num_bridged = 0;                              ///< views whose pose is from dense alignment
   std::uint32_t num_keyframes = 0, num_landmarks = 0;
   std::uint32_t num_loops = 0, num_loops_refused = 0, num_segments = 0, num_joined = 0;
 };
@@ -78,20 +78,20 @@ struct SlamPose {
   std::uint64_t frame = 0;
   std::int64_t stamp_ns = 0;
   std::uint32_t segment = 0;
-  Rigid3 T_map_camera;          ///< in the frame of the segment
+  Rigid3 T_map_camera;  ///< in the frame of the segment
   std::uint32_t num_inliers = 0;
   bool is_keyframe = false;
 };
 
 struct SlamResult {
-  std::vector<SlamPose> poses;          ///< of all tracked views, in their order
+  std::vector<SlamPose> poses;  ///< of all tracked views, in their order
   struct Segment {
     std::uint32_t id = 0;
     std::uint32_t num_keyframes = 0, num_views = 0;
     MapFit fit;
-    MapUncertainty uncertainty;         ///< only where Slam::uncertainty() was asked
+    MapUncertainty uncertainty;  ///< only where Slam::uncertainty() was asked
   };
-  std::vector<Segment> segments;        ///< most views first
+  std::vector<Segment> segments;  ///< most views first
 };
 
 /// Not thread-safe.
@@ -133,8 +133,7 @@ class Slam {
   ViewReport place_view(std::uint64_t frame, const ViewFeatures& view, const ViewThumbnail& thumbnail);
   void begin_bridge(std::int64_t stamp_ns, const ViewThumbnail& thumbnail);
   bool go_on_by_depth(std::uint64_t frame, const ViewFeatures& view, const ViewThumbnail& thumbnail, ViewReport* report);
-  std::uint32_t add_bridged_keyframe(std::uint64_t frame, ViewFeatures view, const ViewThumbnail& thumbnail,
-                                     const DepthBridge::Step& step);
+  std::uint32_t add_bridged_keyframe(std::uint64_t frame, ViewFeatures view, const ViewThumbnail& thumbnail, const DepthBridge::Step& step);
   void end_bridge(std::uint32_t keyframe, ViewReport* report);
   bool begin_segment(std::uint64_t frame, ViewFeatures view, ViewReport* report);
   void add_keyframe(std::uint64_t frame, ViewFeatures view, const Registration& tracked, ViewReport* report);
@@ -160,7 +159,7 @@ class Slam {
   struct {
     std::uint32_t reference = 0;
     Rigid3 T_reference_camera;
-  } bridge_begin_;                         ///< the last view that was tracked by its features
+  } bridge_begin_;  ///< the last view that was tracked by its features
   DepthWeight depth_weight_;
   std::vector<TrackedView> tracked_;
   std::map<std::uint32_t, MapFit> fits_;   ///< of the segments, after finish()

@@ -19,8 +19,7 @@ bool is_before(const Sighting& a, std::uint32_t keyframe) { return a.keyframe < 
 }  // namespace
 
 SlamMap::SlamMap(const RgbdCamera& camera, float scale_factor, int num_levels) : camera_(camera), num_levels_(num_levels) {
-  for (int level = 0; level < 256; ++level)
-    scale_.push_back(std::pow(scale_factor, static_cast<float>(std::min(level, num_levels - 1))));
+  for (int level = 0; level < 256; ++level) scale_.push_back(std::pow(scale_factor, static_cast<float>(std::min(level, num_levels - 1))));
 }
 
 std::uint32_t SlamMap::add_keyframe(std::uint64_t frame, std::uint32_t segment, ViewFeatures view) {

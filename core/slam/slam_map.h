@@ -34,7 +34,7 @@ struct SlamLandmark {
 };
 
 struct SlamKeyframe {
-  std::uint64_t frame = 0;                        ///< index in the recording
+  std::uint64_t frame = 0;  ///< index in the recording
   std::uint32_t segment = 0;
   ViewFeatures view;                              ///< T_map_camera: in the frame of the segment
   std::vector<std::int32_t> landmark_of_feature;  ///< kNoLandmark where there is none

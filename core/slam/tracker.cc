@@ -24,9 +24,7 @@ double median_depth_m(const ViewFeatures& view) {
 }
 
 /// A share of the motion, or more than all of it.
-Rigid3 scaled(const Rigid3& motion, double factor) {
-  return {exp_so3(factor * log_so3(motion.rotation)), factor * motion.translation};
-}
+Rigid3 scaled(const Rigid3& motion, double factor) { return {exp_so3(factor * log_so3(motion.rotation)), factor * motion.translation}; }
 
 }  // namespace
 
@@ -133,8 +131,7 @@ bool Tracker::wants_keyframe(const ViewFeatures& view, const Registration& track
   if (T_reference_camera.translation.norm() > options_.keyframe_distance * median_depth_m(view)) return true;
   if (rotation_distance_rad(T_reference_camera.rotation, Eigen::Quaterniond::Identity()) > options_.keyframe_angle_rad) return true;
   const double share = static_cast<double>(tracked.num_inliers()) / std::max<double>(1, static_cast<double>(view.size()));
-  const double share_then =
-      static_cast<double>(reference.num_landmarks) / std::max<double>(1, static_cast<double>(reference.view.size()));
+  const double share_then = static_cast<double>(reference.num_landmarks) / std::max<double>(1, static_cast<double>(reference.view.size()));
   return tracked.num_inliers() < options_.keyframe_inliers || share < options_.keyframe_share * share_then;
 }
 

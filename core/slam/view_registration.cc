@@ -30,9 +30,8 @@ bool is_convincing(const Registration& found, const PlaceLimits& limits) {
 }
 
 bool is_rival(const Registration& other, const Registration& best, const PlaceLimits& limits) {
-  const bool is_elsewhere =
-      (other.T_map_camera.translation - best.T_map_camera.translation).norm() > limits.rival_distance_m ||
-      rotation_distance_rad(other.T_map_camera.rotation, best.T_map_camera.rotation) > limits.rival_angle_rad;
+  const bool is_elsewhere = (other.T_map_camera.translation - best.T_map_camera.translation).norm() > limits.rival_distance_m ||
+                            rotation_distance_rad(other.T_map_camera.rotation, best.T_map_camera.rotation) > limits.rival_angle_rad;
   return is_elsewhere && other.num_inliers() > limits.max_rival_share * best.num_inliers();
 }
 
@@ -99,8 +98,7 @@ Registration ViewRegistration::look_again(const ViewFeatures& view, LandmarkSet*
   result.T_map_camera = refined.T_map_camera;
   result.covariance = refined.covariance;
   result.median_px = refined.median_px;
-  if (refined.num_with_depth > 0)
-    result.depth_agreement = static_cast<double>(refined.num_depth_inliers) / refined.num_with_depth;
+  if (refined.num_with_depth > 0) result.depth_agreement = static_cast<double>(refined.num_depth_inliers) / refined.num_with_depth;
   std::array<bool, kSpreadColumns * kSpreadRows> is_hit{};
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     if (inlier_mask_[i] == 0) continue;

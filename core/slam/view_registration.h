@@ -18,28 +18,28 @@
 namespace camloc {
 
 struct RegistrationOptions {
-  bool use_depth = true;           ///< measured depth takes part in the pose
+  bool use_depth = true;  ///< measured depth takes part in the pose
   int max_features = 1000;
-  int guided_distance = 64;        ///< Hamming
+  int guided_distance = 64;  ///< Hamming
   double guided_ratio = 0.9;
-  float fine_radius_px = 6;        ///< window of the second look, around the pose of the first
-  double max_error_px = 4.0;       ///< of an inlier
+  float fine_radius_px = 6;   ///< window of the second look, around the pose of the first
+  double max_error_px = 4.0;  ///< of an inlier
   int min_inliers = 20;
 };
 
 struct RegisteredPair {
-  std::uint32_t landmark = 0, feature = 0;   ///< index in the SlamMap; in the view
+  std::uint32_t landmark = 0, feature = 0;  ///< index in the SlamMap; in the view
 };
 
 struct Registration {
   bool is_found = false;
   Rigid3 T_map_camera;
   Matrix6d covariance = Matrix6d::Identity();
-  int num_visible = 0;             ///< landmarks that should be in the image
-  int num_matches = 0;             ///< of those, found in their window
+  int num_visible = 0;  ///< landmarks that should be in the image
+  int num_matches = 0;  ///< of those, found in their window
   double median_px = 0;
-  double depth_agreement = 1;      ///< share of inliers with depth whose depth agrees
-  double spread = 0;               ///< share of the image's 8 x 6 cells that hold an inlier
+  double depth_agreement = 1;  ///< share of inliers with depth whose depth agrees
+  double spread = 0;           ///< share of the image's 8 x 6 cells that hold an inlier
   std::vector<RegisteredPair> inliers;
   [[nodiscard]] int num_inliers() const { return static_cast<int>(inliers.size()); }
   [[nodiscard]] double inlier_ratio() const { return num_matches == 0 ? 0 : static_cast<double>(num_inliers()) / num_matches; }
@@ -49,8 +49,8 @@ struct Registration {
 struct PlaceLimits {
   int min_inliers = 40;
   double min_inlier_ratio = 0.4, min_depth_agreement = 0.7, min_spread = 0.15;
-  double max_rival_share = 0.6;                            ///< inliers of another place, as a share of the best
-  double rival_distance_m = 0.5, rival_angle_rad = 0.35;   ///< another place lies at least this far from the best
+  double max_rival_share = 0.6;                           ///< inliers of another place, as a share of the best
+  double rival_distance_m = 0.5, rival_angle_rad = 0.35;  ///< another place lies at least this far from the best
 };
 
 /// Enough landmarks fit, with pixels and with depth, spread over the image.
@@ -69,7 +69,8 @@ class ViewRegistration {
   /// From descriptors alone, then guided by what was found.
   [[nodiscard]] Registration unguided(const ViewFeatures& view, LandmarkSet* landmarks, std::uint64_t seed);
   /// Only the matching of `guided`: features in windows around the prediction, without a pose. Valid until the next call.
-  [[nodiscard]] std::span<const Match> matches_around(const ViewFeatures& view, LandmarkSet* landmarks, const Rigid3& T_map_camera, float radius_px);
+  [[nodiscard]] std::span<const Match> matches_around(const ViewFeatures& view, LandmarkSet* landmarks, const Rigid3& T_map_camera,
+                                                      float radius_px);
 
  private:
   void fill_pairs(const ViewFeatures& view, const LandmarkSet& landmarks, std::span<const Match> matches);

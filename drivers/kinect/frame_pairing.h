@@ -18,8 +18,8 @@ enum class Pairing : std::uint8_t {
 
 /// For the oldest colour and the oldest depth image that are waiting, by their device stamps (32 bits, wrapping). Images of one
 /// rate that are at most half a period apart are each other's nearest. `is_overdue`: depth for this colour would be here by now.
-[[nodiscard]] constexpr Pairing decide_pairing(std::optional<std::uint32_t> color, std::optional<std::uint32_t> depth,
-                                               bool is_overdue, std::int32_t half_period_ticks) {
+[[nodiscard]] constexpr Pairing decide_pairing(std::optional<std::uint32_t> color, std::optional<std::uint32_t> depth, bool is_overdue,
+                                               std::int32_t half_period_ticks) {
   if (!color) return Pairing::kWait;
   if (!depth) return is_overdue ? Pairing::kColorAlone : Pairing::kWait;
   const auto depth_after_color = static_cast<std::int32_t>(*depth - *color);

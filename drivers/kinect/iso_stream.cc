@@ -86,15 +86,12 @@ bool IsoStream::stop(std::chrono::milliseconds patience) {
   return false;
 }
 
-void LIBUSB_CALL IsoStream::on_transfer(libusb_transfer* transfer) {
-  static_cast<IsoStream*>(transfer->user_data)->handle(transfer);
-}
+void LIBUSB_CALL IsoStream::on_transfer(libusb_transfer* transfer) { static_cast<IsoStream*>(transfer->user_data)->handle(transfer); }
 
 void IsoStream::handle(libusb_transfer* transfer) {
   if (transfer->status == LIBUSB_TRANSFER_NO_DEVICE) receiver_->on_gone();
   if (transfer->status == LIBUSB_TRANSFER_COMPLETED && !is_stopping_) receive(transfer);
-  const bool may_go_on =
-      transfer->status != LIBUSB_TRANSFER_NO_DEVICE && transfer->status != LIBUSB_TRANSFER_CANCELLED && !is_stopping_;
+  const bool may_go_on = transfer->status != LIBUSB_TRANSFER_NO_DEVICE && transfer->status != LIBUSB_TRANSFER_CANCELLED && !is_stopping_;
   if (may_go_on) static_cast<void>(submit(transfer));
   num_in_flight_.fetch_sub(1);
 }

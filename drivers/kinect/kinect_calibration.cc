@@ -22,8 +22,8 @@ constexpr double kColorFocalPx = 525.0;
 }  // namespace
 
 bool ZeroPlane::is_plausible() const {
-  return is_within(emitter_distance_cm, 1, 30) && is_within(color_distance_cm, 0.5, 20) &&
-         is_within(reference_distance_cm, 20, 1000) && is_within(pixel_size_cm, 0.01, 2) && is_within(focal_px(), 300, 1200);
+  return is_within(emitter_distance_cm, 1, 30) && is_within(color_distance_cm, 0.5, 20) && is_within(reference_distance_cm, 20, 1000) &&
+         is_within(pixel_size_cm, 0.01, 2) && is_within(focal_px(), 300, 1200);
 }
 
 std::optional<ZeroPlane> parse_zero_plane(std::span<const std::uint8_t> body) {
@@ -47,8 +47,7 @@ std::optional<RegistrationBlock> parse_registration(std::span<const std::uint8_t
   block.ax = number(1), block.bx = number(2), block.cx = number(3), block.dx = number(4), block.dx_start = number(5);
   block.ay = number(6), block.by = number(7), block.cy = number(8), block.dy = number(9), block.dy_start = number(10);
   block.dxdx_start = number(17), block.dxdy_start = number(18), block.dydx_start = number(19), block.dydy_start = number(20);
-  block.dxdxdx_start = number(21), block.dydxdx_start = number(22), block.dxdxdy_start = number(23),
-  block.dydxdy_start = number(24);
+  block.dxdxdx_start = number(21), block.dydxdx_start = number(22), block.dxdxdy_start = number(23), block.dydxdy_start = number(24);
   block.dydydx_start = number(26), block.dydydy_start = number(28);
   return block;
 }
@@ -80,8 +79,7 @@ RgbdCamera nominal_camera(const KinectCalibration& calibration, bool is_register
   camera.is_depth_registered = is_registered;
   if (!is_registered) {
     camera.depth.fx = camera.depth.fy = plane.focal_px();
-    camera.T_color_depth.translation.x() =
-        -0.01 * plane.color_distance_cm;  // the colour camera is to the right of the infrared one
+    camera.T_color_depth.translation.x() = -0.01 * plane.color_distance_cm;  // the colour camera is to the right of the infrared one
   }
   camera.min_depth_m = 0.4;
   camera.max_depth_m = 8.0;

@@ -67,8 +67,8 @@ Status KinectControl::write_register(Register address, std::uint16_t value) {
   const auto reply = command(Command::kWriteRegister, body, 2);
   if (!reply) return reply.status();
   if (const std::uint16_t refusal = word_at(*reply, 0); refusal != 0) {
-    return {ErrorCode::kInvalid, "Kinect register " + hexadecimal(body[0]) + " does not take " + std::to_string(value) +
-                                     " (status " + std::to_string(refusal) + ")"};
+    return {ErrorCode::kInvalid, "Kinect register " + hexadecimal(body[0]) + " does not take " + std::to_string(value) + " (status " +
+                                     std::to_string(refusal) + ")"};
   }
   return Status::ok();
 }
@@ -180,8 +180,7 @@ Status KinectControl::set_exposure_mode(bool is_automatic) {
   if (const auto reply = command(Command::kCameraControl, write, 2); !reply) return reply.status();
   const auto reply = command(Command::kCameraControl, read, 8);
   if (!reply) return reply.status();
-  if (reply->size() < 8 || word_at(*reply, 6) != mode)
-    return {ErrorCode::kUnsupported, "this Kinect does not change its exposure mode"};
+  if (reply->size() < 8 || word_at(*reply, 6) != mode) return {ErrorCode::kUnsupported, "this Kinect does not change its exposure mode"};
   return Status::ok();
 }
 
@@ -197,8 +196,7 @@ Status KinectControl::set_color_1473(const ColorControls& controls) {
     if (status) status = write_control_word(kControlExposureLow, static_cast<std::uint16_t>(hundreds_us & 0xffff));
     if (!status) return status;
   }
-  return controls.gain ? write_control_word(kControlGain, static_cast<std::uint16_t>(std::lround(*controls.gain * 32)))
-                       : Status::ok();
+  return controls.gain ? write_control_word(kControlGain, static_cast<std::uint16_t>(std::lround(*controls.gain * 32))) : Status::ok();
 }
 
 Status KinectControl::set_color(const ColorControls& controls, bool is_1414) {

@@ -23,8 +23,7 @@ Result<std::unique_ptr<KinectDevice>> KinectDevice::open(const std::string& sele
   if (!camera) return camera.status();
   const Result<StreamSetting> setting = find_stream_setting(libusb_get_device(camera->handle.get()));
   if (!setting) return setting.status();
-  std::unique_ptr<KinectDevice> device(
-      new KinectDevice(std::move(context).value(), std::move(camera).value(), *setting, receiver));
+  std::unique_ptr<KinectDevice> device(new KinectDevice(std::move(context).value(), std::move(camera).value(), *setting, receiver));
   if (Status status = device->claim(); !status) return status;
   device->event_thread_ = std::thread([raw = device.get()] { raw->handle_events(); });
   return device;
@@ -94,8 +93,7 @@ Status KinectDevice::send(std::span<const std::uint8_t> request) {
   const int sent = libusb_control_transfer(camera_.handle.get(), kVendorOut, 0, 0, 0, const_cast<unsigned char*>(request.data()),
                                            static_cast<std::uint16_t>(request.size()), kControlTimeoutMs);
   if (sent < 0) return usb_error(sent, errno, "USB control transfer");
-  if (static_cast<std::size_t>(sent) != request.size())
-    return {ErrorCode::kCorrupt, "USB control transfer: the device took only a part"};
+  if (static_cast<std::size_t>(sent) != request.size()) return {ErrorCode::kCorrupt, "USB control transfer: the device took only a part"};
   return Status::ok();
 }
 

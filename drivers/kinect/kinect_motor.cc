@@ -21,9 +21,7 @@ constexpr double kMaxAcceleration = 4 * kStandardGravity;  // twice the range of
 
 std::optional<Eigen::Vector3d> parse_acceleration(std::span<const std::uint8_t> state) {
   if (state.size() < kMotorStateBytes) return std::nullopt;
-  const auto counts = [state](std::size_t at) {
-    return static_cast<double>(static_cast<std::int16_t>(state[at] << 8 | state[at + 1]));
-  };
+  const auto counts = [state](std::size_t at) { return static_cast<double>(static_cast<std::int16_t>(state[at] << 8 | state[at + 1])); };
   const Eigen::Vector3d sensor = Eigen::Vector3d(counts(2), counts(4), counts(6)) * (kStandardGravity / kAccelerationCountsPerG);
   if (sensor.norm() > kMaxAcceleration) return std::nullopt;
   return kinect_R_camera_accelerometer() * sensor;
@@ -59,13 +57,13 @@ Status KinectMotor::set_tilt(double degrees) {
   const double clipped = std::clamp(degrees, -1.0 * kMaxTiltDeg, 1.0 * kMaxTiltDeg);
   const auto half_degrees = static_cast<std::int16_t>(std::lround(2 * clipped));
   errno = 0;
-  const int code = libusb_control_transfer(handle_.get(), kVendorOut, kMotorSetTilt, static_cast<std::uint16_t>(half_degrees), 0,
-                                           nullptr, 0, kTimeoutMs);
+  const int code = libusb_control_transfer(handle_.get(), kVendorOut, kMotorSetTilt, static_cast<std::uint16_t>(half_degrees), 0, nullptr,
+                                           0, kTimeoutMs);
   return code < 0 ? usb_error(code, errno, "Kinect motor") : Status::ok();
 }
 
-bool KinectMotor::submit(Request* request, std::uint8_t direction, std::uint8_t request_code, std::uint16_t value,
-                         std::uint16_t length, libusb_transfer_cb_fn callback) {
+bool KinectMotor::submit(Request* request, std::uint8_t direction, std::uint8_t request_code, std::uint16_t value, std::uint16_t length,
+                         libusb_transfer_cb_fn callback) {
   if (request->is_busy || num_failures_ >= kMaxFailures) return false;
   libusb_fill_control_setup(request->buffer.data(), direction, request_code, value, 0, length);
   libusb_fill_control_transfer(request->transfer.get(), handle_.get(), request->buffer.data(), callback, this, kTimeoutMs);

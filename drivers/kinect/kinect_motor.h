@@ -57,8 +57,8 @@ class KinectMotor {
     std::atomic<bool> is_busy{false};
   };
   explicit KinectMotor(UsbHandle handle);
-  [[nodiscard]] bool submit(Request* request, std::uint8_t direction, std::uint8_t request_code, std::uint16_t value,
-                            std::uint16_t length, libusb_transfer_cb_fn callback);
+  [[nodiscard]] bool submit(Request* request, std::uint8_t direction, std::uint8_t request_code, std::uint16_t value, std::uint16_t length,
+                            libusb_transfer_cb_fn callback);
   static void LIBUSB_CALL on_state(libusb_transfer* transfer);
   static void LIBUSB_CALL on_led(libusb_transfer* transfer);
 

@@ -50,8 +50,7 @@ Result<std::optional<double>> number(const SourceUrl& url, const std::string& ke
 }  // namespace
 
 Result<KinectOptions> parse_kinect_options(const SourceUrl& url) {
-  if (Status status = url.check_options({"depth", "auto_exposure", "exposure_us", "gain", "white_balance", "led", "tilt_deg"});
-      !status)
+  if (Status status = url.check_options({"depth", "auto_exposure", "exposure_us", "gain", "white_balance", "led", "tilt_deg"}); !status)
     return status;
   const auto depth = choice(url, "depth", kDepthModes), auto_exposure = choice(url, "auto_exposure", kSwitch);
   const auto white_balance = choice(url, "white_balance", kWhiteBalances), led = choice(url, "led", kLeds);
@@ -76,8 +75,7 @@ Result<KinectOptions> parse_kinect_options(const SourceUrl& url) {
     if (**led >= 0) options.fixed_led = static_cast<Led>(**led);
   }
   if (options.color.auto_exposure.value_or(false) && (options.color.exposure_us || options.color.gain)) {
-    return Status(ErrorCode::kInvalid,
-                  url.text + ": auto_exposure=1 contradicts exposure_us= and gain=, which are for manual exposure");
+    return Status(ErrorCode::kInvalid, url.text + ": auto_exposure=1 contradicts exposure_us= and gain=, which are for manual exposure");
   }
   return options;
 }

@@ -39,8 +39,8 @@ inline constexpr int kCameraInterface = 0;
 inline constexpr std::uint8_t kColorEndpoint = 0x81, kDepthEndpoint = 0x82;
 inline constexpr int kWidth = 640, kHeight = 480, kFrameRateHz = 30;
 inline constexpr std::size_t kPacketHeaderBytes = 12;
-inline constexpr std::size_t kColorFrameBytes = 640 * 480;           ///< Bayer GRBG, 8 bits
-inline constexpr std::size_t kDepthFrameBytes = 640 * 480 * 11 / 8;  ///< 11 bits a pixel, first pixel in the highest bits
+inline constexpr std::size_t kColorFrameBytes = 640 * 480;                          ///< Bayer GRBG, 8 bits
+inline constexpr std::size_t kDepthFrameBytes = 640 * 480 * 11 / 8;                 ///< 11 bits a pixel, first pixel in the highest bits
 inline constexpr std::size_t kColorPayloadBytes = 1908, kDepthPayloadBytes = 1748;  ///< of every packet but a frame's last
 inline constexpr std::uint8_t kColorFlagBase = 0x80, kDepthFlagBase = 0x70;
 inline constexpr std::uint8_t kFlagStart = 1, kFlagMiddle = 2, kFlagEnd = 5;
@@ -83,8 +83,7 @@ inline constexpr double kSensorRowUs = 54.21;
 inline constexpr std::uint16_t kControlExposureMode = 0xcc00;                                ///< 1 manual, 2 automatic
 inline constexpr std::uint16_t kControlExposureHigh = 0xcc04, kControlExposureLow = 0xcc06;  ///< in 100 us
 inline constexpr std::uint16_t kControlGain = 0xcc0e;                                        ///< times 32
-inline constexpr std::uint16_t kControlWriteByte = 0xff80, kControlByteValue = 0xff81, kControlReadWord = 0xff82,
-                               kControlReadByte = 0xff83;
+inline constexpr std::uint16_t kControlWriteByte = 0xff80, kControlByteValue = 0xff81, kControlReadWord = 0xff82, kControlReadByte = 0xff83;
 
 inline constexpr std::size_t kControlHeaderBytes = 8;
 inline constexpr std::size_t kMaxControlBytes = 512;
@@ -120,8 +119,7 @@ struct ControlReply {
 
 // ---- motor [OK]: vendor requests to a device of its own
 inline constexpr std::uint8_t kMotorSetLed = 0x06, kMotorSetTilt = 0x31, kMotorGetState = 0x32;
-inline constexpr std::size_t kMotorStateBytes =
-    10;  ///< big-endian acceleration x, y, z at byte 2, tilt in half degrees at byte 8
+inline constexpr std::size_t kMotorStateBytes = 10;     ///< big-endian acceleration x, y, z at byte 2, tilt in half degrees at byte 8
 inline constexpr double kAccelerationCountsPerG = 819;  ///< Kionix KXSD9
 inline constexpr int kMaxTiltDeg = 31;
 enum class Led : std::uint8_t { kOff = 0, kGreen = 1, kRed = 2, kYellow = 3, kBlinkGreen = 4, kBlinkRedYellow = 6 };

@@ -20,8 +20,7 @@ void KinectReceiver::Channel::write_to(RawFrame* frame) {
   assembler.set_target(frame->bytes);
 }
 
-KinectReceiver::KinectReceiver()
-    : channels_{std::make_unique<Channel>(color_layout()), std::make_unique<Channel>(depth_layout())} {}
+KinectReceiver::KinectReceiver() : channels_{std::make_unique<Channel>(color_layout()), std::make_unique<Channel>(depth_layout())} {}
 
 void KinectReceiver::on_packet(Stream stream, std::span<const std::uint8_t> packet, std::int64_t arrival_ns) {
   Channel& c = channel(stream);

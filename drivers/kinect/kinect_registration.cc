@@ -59,25 +59,23 @@ struct ImagePolynomial {
 };
 
 ImagePolynomial horizontal_displacement(const RegistrationBlock& b) {
-  return {
-      {signed_field(b.dx_start, 19) * 512, signed_field(b.dxdx_start, 21) * 256, signed_field(b.dxdxdx_start, 24) * 256, b.ax},
-      signed_field(b.dydx_start, 21) * 256,
-      signed_field(b.dydydx_start, 24) * 256,
-      b.bx,
-      signed_field(b.dydxdx_start, 24) * 256,
-      b.dx,
-      b.cx};
+  return {{signed_field(b.dx_start, 19) * 512, signed_field(b.dxdx_start, 21) * 256, signed_field(b.dxdxdx_start, 24) * 256, b.ax},
+          signed_field(b.dydx_start, 21) * 256,
+          signed_field(b.dydydx_start, 24) * 256,
+          b.bx,
+          signed_field(b.dydxdx_start, 24) * 256,
+          b.dx,
+          b.cx};
 }
 
 ImagePolynomial vertical_displacement(const RegistrationBlock& b) {
-  return {
-      {signed_field(b.dy_start, 19) * 512, signed_field(b.dxdy_start, 21) * 256, signed_field(b.dxdxdy_start, 24) * 256, b.ay},
-      signed_field(b.dydy_start, 21) * 256,
-      signed_field(b.dydydy_start, 24) * 256,
-      b.by,
-      signed_field(b.dydxdy_start, 24) * 256,
-      b.dy,
-      b.cy};
+  return {{signed_field(b.dy_start, 19) * 512, signed_field(b.dxdy_start, 21) * 256, signed_field(b.dxdxdy_start, 24) * 256, b.ay},
+          signed_field(b.dydy_start, 21) * 256,
+          signed_field(b.dydydy_start, 24) * 256,
+          b.by,
+          signed_field(b.dydxdy_start, 24) * 256,
+          b.dy,
+          b.cy};
 }
 
 std::uint32_t place_of(double x, double y, int start_lines) {

@@ -34,9 +34,7 @@ constexpr milliseconds kDepthPatience{50};
 /// Without packets for this long a stream stands still, and so does the source.
 constexpr milliseconds kSilence{200};
 
-steady_clock::time_point time_of(std::int64_t monotonic_ns) {
-  return steady_clock::time_point(std::chrono::nanoseconds(monotonic_ns));
-}
+steady_clock::time_point time_of(std::int64_t monotonic_ns) { return steady_clock::time_point(std::chrono::nanoseconds(monotonic_ns)); }
 
 /// What the device is and how its depth is read; fixed from open to close.
 struct Geometry {
@@ -47,8 +45,7 @@ struct Geometry {
 
 class KinectSource final : public FrameSource {
  public:
-  [[nodiscard]] static Result<std::unique_ptr<FrameSource>> open(const KinectOptions& kinect_options,
-                                                                 const FrameSourceOptions& options) {
+  [[nodiscard]] static Result<std::unique_ptr<FrameSource>> open(const KinectOptions& kinect_options, const FrameSourceOptions& options) {
     std::unique_ptr<KinectSource> source(new KinectSource(kinect_options, options));
     if (Status status = source->connect(); !status) return status;
     return std::unique_ptr<FrameSource>(std::move(source));
@@ -63,10 +60,7 @@ class KinectSource final : public FrameSource {
 
  private:
   KinectSource(KinectOptions kinect_options, const FrameSourceOptions& options)
-      : kinect_options_(std::move(kinect_options)),
-        wants_color_(options.wants_color),
-        raw_depth_(kNumPixels),
-        clock_(kDeviceClockHz) {}
+      : kinect_options_(std::move(kinect_options)), wants_color_(options.wants_color), raw_depth_(kNumPixels), clock_(kDeviceClockHz) {}
   [[nodiscard]] bool has_depth() const { return kinect_options_.depth != DepthMode::kOff; }
   [[nodiscard]] Status connect();
   [[nodiscard]] Status set_up_motor();
@@ -190,8 +184,7 @@ Pairing KinectSource::pairing(steady_clock::time_point now) const {
   if (color_ == nullptr) return Pairing::kWait;
   if (!has_depth()) return Pairing::kColorAlone;
   const bool is_overdue = now - time_of(color_->complete_ns) > kDepthPatience;
-  return decide_pairing(color_->device_stamp, depth_ ? std::optional(depth_->device_stamp) : std::nullopt, is_overdue,
-                        kHalfPeriodTicks);
+  return decide_pairing(color_->device_stamp, depth_ ? std::optional(depth_->device_stamp) : std::nullopt, is_overdue, kHalfPeriodTicks);
 }
 
 // Every turn takes or gives back a frame, or waits until the deadline, so that it ends.
@@ -220,8 +213,7 @@ Status KinectSource::next(FrameBuffer* frame, milliseconds timeout) {
       case Pairing::kWait:
         if (Status status = check_incomplete(); !status) return status;
         if (now >= deadline) return stalled(timeout);
-        receiver_.wait_until(color_ ? std::min(deadline, time_of(color_->complete_ns) + kDepthPatience + milliseconds(1))
-                                    : deadline);
+        receiver_.wait_until(color_ ? std::min(deadline, time_of(color_->complete_ns) + kDepthPatience + milliseconds(1)) : deadline);
         break;
     }
   }
@@ -268,17 +260,15 @@ Status KinectSource::check_incomplete() {
 
 Status KinectSource::stalled(milliseconds timeout) {
   show(Led::kBlinkRedYellow);
-  if (Status problem = device_->transfer_problem(); !problem)
-    return {ErrorCode::kTimeout, info_.description + ": " + problem.message()};
+  if (Status problem = device_->transfer_problem(); !problem) return {ErrorCode::kTimeout, info_.description + ": " + problem.message()};
   const ReceiverReport report = receiver_.report();
   const std::uint64_t errors = report.transport_errors[0] + report.transport_errors[1];
   const std::uint64_t packets = report.counts[0].packets + report.counts[1].packets;
   const bool is_bandwidth = errors > packets / 10;
-  return {ErrorCode::kTimeout,
-          info_.description + ": no complete frame in " + std::to_string(timeout.count()) + " ms" +
-              (is_bandwidth ? " (" + std::to_string(errors) + " USB packets failed, " + std::to_string(packets) +
-                                  " arrived: too little USB bandwidth? plug it into a USB controller of its own)"
-                            : "")};
+  return {ErrorCode::kTimeout, info_.description + ": no complete frame in " + std::to_string(timeout.count()) + " ms" +
+                                   (is_bandwidth ? " (" + std::to_string(errors) + " USB packets failed, " + std::to_string(packets) +
+                                                       " arrived: too little USB bandwidth? plug it into a USB controller of its own)"
+                                                 : "")};
 }
 
 FrameSourceHealth KinectSource::health() const {

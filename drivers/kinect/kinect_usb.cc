@@ -26,9 +26,7 @@ class DeviceList {
   }
   DeviceList(const DeviceList&) = delete;
   DeviceList& operator=(const DeviceList&) = delete;
-  [[nodiscard]] std::span<libusb_device* const> devices() const {
-    return {devices_, size_ > 0 ? static_cast<std::size_t>(size_) : 0};
-  }
+  [[nodiscard]] std::span<libusb_device* const> devices() const { return {devices_, size_ > 0 ? static_cast<std::size_t>(size_) : 0}; }
 
  private:
   libusb_device** devices_ = nullptr;
@@ -48,8 +46,7 @@ std::optional<libusb_device_descriptor> descriptor_of(libusb_device* device) {
 }
 
 bool is_product(const libusb_device_descriptor& descriptor, std::span<const std::uint16_t> products) {
-  return descriptor.idVendor == kVendorMicrosoft &&
-         std::find(products.begin(), products.end(), descriptor.idProduct) != products.end();
+  return descriptor.idVendor == kVendorMicrosoft && std::find(products.begin(), products.end(), descriptor.idProduct) != products.end();
 }
 
 constexpr std::array<std::uint16_t, 2> kCameras{kProductCamera, kProductCameraK4w};
@@ -133,11 +130,10 @@ Status nothing_attached(const DeviceList& list) {
     return {ErrorCode::kUnavailable, "no Kinect camera is attached, only its motor: the camera needs the 12 V power supply"};
   }
   if (!devices_of(list, kProductsAudio).empty()) {
-    return {ErrorCode::kUnavailable,
-            "no Kinect camera is attached, only its audio device: plug it in again, check the power supply"};
+    return {ErrorCode::kUnavailable, "no Kinect camera is attached, only its audio device: plug it in again, check the power supply"};
   }
-  return {ErrorCode::kUnavailable, "no Kinect is attached (" + std::to_string(list.devices().size()) +
-                                       " USB devices, none of them 045e:02ae or 045e:02bf)"};
+  return {ErrorCode::kUnavailable,
+          "no Kinect is attached (" + std::to_string(list.devices().size()) + " USB devices, none of them 045e:02ae or 045e:02bf)"};
 }
 
 }  // namespace
@@ -160,8 +156,7 @@ Status usb_error(int code, int system_error, const std::string& what) {
     case LIBUSB_ERROR_NO_DEVICE:
     case LIBUSB_ERROR_NOT_FOUND: return {ErrorCode::kUnavailable, what + ": the device is gone"};
     case LIBUSB_ERROR_ACCESS:
-      return {ErrorCode::kIo,
-              what + ": no permission; install the udev rule 60-camloc.rules (package camloc), or join the group plugdev"};
+      return {ErrorCode::kIo, what + ": no permission; install the udev rule 60-camloc.rules (package camloc), or join the group plugdev"};
     case LIBUSB_ERROR_BUSY: return {ErrorCode::kUnavailable, what + ": another program is using it"};
     case LIBUSB_ERROR_TIMEOUT: return {ErrorCode::kTimeout, what + ": the device does not answer"};
     default: break;
@@ -170,10 +165,8 @@ Status usb_error(int code, int system_error, const std::string& what) {
     return {ErrorCode::kIo, what + ": not enough memory for USB transfers; raise /sys/module/usbcore/parameters/usbfs_memory_mb"};
   }
   if (system_error == ENOSPC) {
-    return {
-        ErrorCode::kIo,
-        what +
-            ": not enough USB bandwidth; plug the Kinect into a USB controller of its own, or take other cameras off this one"};
+    return {ErrorCode::kIo,
+            what + ": not enough USB bandwidth; plug the Kinect into a USB controller of its own, or take other cameras off this one"};
   }
   return {ErrorCode::kIo, what + ": " + libusb_strerror(code)};
 }
@@ -188,8 +181,7 @@ Result<OpenCamera> open_camera(libusb_context* context, const std::string& selec
   });
   if (const auto index = index_in(selector)) {
     if (*index < cameras.size()) return open_one(list, cameras[*index]);
-    return Status(ErrorCode::kUnavailable,
-                  "no Kinect with index " + selector + ": " + std::to_string(cameras.size()) + " attached");
+    return Status(ErrorCode::kUnavailable, "no Kinect with index " + selector + ": " + std::to_string(cameras.size()) + " attached");
   }
   std::string others;
   std::optional<Status> problem;
@@ -200,8 +192,7 @@ Result<OpenCamera> open_camera(libusb_context* context, const std::string& selec
       continue;
     }
     if (camera->serial == selector) return camera;
-    others +=
-        (others.empty() ? "" : ", ") + (camera->serial.empty() ? "one without serial at " + camera->location : camera->serial);
+    others += (others.empty() ? "" : ", ") + (camera->serial.empty() ? "one without serial at " + camera->location : camera->serial);
   }
   if (others.empty() && problem) return *problem;
   return Status(ErrorCode::kUnavailable, "no Kinect with serial " + selector + "; attached: " + others);
@@ -223,8 +214,7 @@ Result<StreamSetting> find_stream_setting(libusb_device* camera) {
   libusb_config_descriptor* config = nullptr;
   const int code = libusb_get_active_config_descriptor(camera, &config);
   if (code != LIBUSB_SUCCESS) return usb_error(code, 0, "Kinect camera, USB descriptors");
-  const std::unique_ptr<libusb_config_descriptor, void (*)(libusb_config_descriptor*)> owner(config,
-                                                                                             libusb_free_config_descriptor);
+  const std::unique_ptr<libusb_config_descriptor, void (*)(libusb_config_descriptor*)> owner(config, libusb_free_config_descriptor);
   std::optional<StreamSetting> best;
   for (const libusb_interface& interface : elements(config->interface, config->bNumInterfaces)) {
     for (const libusb_interface_descriptor& alternate : elements(interface.altsetting, interface.num_altsetting)) {

@@ -20,8 +20,7 @@ std::optional<Intrinsics> intrinsics_of(const StreamGeometry& geometry) {
   intrinsics.width = geometry.width;
   intrinsics.height = geometry.height;
   intrinsics.fx = geometry.width / (2 * std::tan(geometry.horizontal_fov_rad / 2));
-  intrinsics.fy =
-      is_plausible(geometry.vertical_fov_rad) ? geometry.height / (2 * std::tan(geometry.vertical_fov_rad / 2)) : intrinsics.fx;
+  intrinsics.fy = is_plausible(geometry.vertical_fov_rad) ? geometry.height / (2 * std::tan(geometry.vertical_fov_rad / 2)) : intrinsics.fx;
   intrinsics.cx = 0.5 * (geometry.width - 1);
   intrinsics.cy = 0.5 * (geometry.height - 1);
   return intrinsics.validate() ? std::optional(intrinsics) : std::nullopt;

@@ -92,15 +92,14 @@ Openni2Installation inspect_openni2() {
   result.is_library_found = true;
   result.library_path = library.value()->path;
   const OniVersion& version = library.value()->version;
-  result.version = std::to_string(version.major) + "." + std::to_string(version.minor) + "." +
-                   std::to_string(version.maintenance) + "." + std::to_string(version.build);
+  result.version = std::to_string(version.major) + "." + std::to_string(version.minor) + "." + std::to_string(version.maintenance) + "." +
+                   std::to_string(version.build);
   result.drivers_folder = drivers_folder_of(result.library_path);
   const Result<std::shared_ptr<openni2::Session>> session = openni2::Session::acquire();
   result.is_started = session.is_ok();
   if (!session) result.problem = session.status().message();
   result.drivers = inspect_drivers(result.drivers_folder);
-  if (session &&
-      std::none_of(result.drivers.begin(), result.drivers.end(), [](const Openni2Driver& driver) { return driver.is_loaded; })) {
+  if (session && std::none_of(result.drivers.begin(), result.drivers.end(), [](const Openni2Driver& driver) { return driver.is_loaded; })) {
     result.problem = result.drivers_folder + ": no driver was loaded from here";
   }
   if (!session) return result;

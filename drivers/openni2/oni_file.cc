@@ -120,12 +120,8 @@ std::string printable(std::string_view letters) {
 /// OpenNI 1's numbers of pixel formats ("xnPixelFormat") as OpenNI2's.
 int from_xn_pixel_format(std::uint64_t value, OniNode node) {
   if (node == OniNode::kDepth) return ONI_PIXEL_FORMAT_DEPTH_1_MM;
-  constexpr int kFormats[] = {0,
-                              ONI_PIXEL_FORMAT_RGB888,
-                              ONI_PIXEL_FORMAT_YUV422,
-                              ONI_PIXEL_FORMAT_GRAY8,
-                              ONI_PIXEL_FORMAT_GRAY16,
-                              ONI_PIXEL_FORMAT_JPEG};
+  constexpr int kFormats[] = {
+      0, ONI_PIXEL_FORMAT_RGB888, ONI_PIXEL_FORMAT_YUV422, ONI_PIXEL_FORMAT_GRAY8, ONI_PIXEL_FORMAT_GRAY16, ONI_PIXEL_FORMAT_JPEG};
   return value < std::size(kFormats) ? kFormats[value] : 0;
 }
 
@@ -155,8 +151,7 @@ class Scanner {
     if (Status status = read_at(fd_, name_, 0, sizeof(head), head); !status) return status;
     if (std::memcmp(head, "NI10", 4) != 0) return {ErrorCode::kInvalid, name_ + ": no .oni recording, which begins with NI10"};
     FieldReader fields(std::span<const std::uint8_t>(head).subspan(4));
-    const std::uint64_t major = fields.number(1), minor = fields.number(1), maintenance = fields.number(2),
-                        build = fields.number(4);
+    const std::uint64_t major = fields.number(1), minor = fields.number(1), maintenance = fields.number(2), build = fields.number(4);
     const std::string version =
         std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(maintenance) + "." + std::to_string(build);
     const std::uint64_t ordered = maintenance << 32 | build;
@@ -287,18 +282,16 @@ class Scanner {
     if (stamp_us > static_cast<std::uint64_t>(kMaxStampUs)) return broken("stamp out of range");
     const std::optional<PixelFormat> pixels = pixel_format_of(node.oni_pixel_format);
     OniStream& stream = streams_[node.stream];
-    if (!pixels)
-      return {ErrorCode::kUnsupported, name_ + ": pixel format " + std::to_string(node.oni_pixel_format) + " is not read"};
+    if (!pixels) return {ErrorCode::kUnsupported, name_ + ": pixel format " + std::to_string(node.oni_pixel_format) + " is not read"};
     node.format.pixels = *pixels;
     if (stream.codec == OniCodec::kJpeg) node.format.pixels.layout = PixelLayout::kJpeg;
-    if ((stream.node == OniNode::kDepth) != (pixels->depth_unit_m > 0))
-      return broken("pixels that do not belong to their stream");
+    if ((stream.node == OniNode::kDepth) != (pixels->depth_unit_m > 0)) return broken("pixels that do not belong to their stream");
     if (stream.formats.empty() || !(stream.formats.back() == node.format)) {
       if (stream.formats.size() == kMaxFormats) return broken("too many changes of format");
       stream.formats.push_back(node.format);
     }
-    stream.frames.push_back({position_ + record.fields_size, record.payload_size,
-                             static_cast<std::uint32_t>(stream.formats.size() - 1), static_cast<std::int64_t>(stamp_us)});
+    stream.frames.push_back({position_ + record.fields_size, record.payload_size, static_cast<std::uint32_t>(stream.formats.size() - 1),
+                             static_cast<std::int64_t>(stamp_us)});
     return Status::ok();
   }
 
@@ -353,8 +346,7 @@ Result<OniFile> OniFile::open(UniqueFd file, const std::string& name) {
 }
 
 const OniStream* OniFile::find(OniNode node) const {
-  const auto found =
-      std::find_if(streams_.begin(), streams_.end(), [node](const OniStream& stream) { return stream.node == node; });
+  const auto found = std::find_if(streams_.begin(), streams_.end(), [node](const OniStream& stream) { return stream.node == node; });
   return found == streams_.end() ? nullptr : &*found;
 }
 

@@ -133,14 +133,14 @@ class OniSource final : public FrameSource {
     Status status = decode_gray(bytes_, "colour image", &gray);
     if (status) status = check_size(gray.width, gray.height, format);
     if (status && format.is_mirrored)
-      status = to_gray({gray.pixels, gray.width, gray.height, static_cast<std::size_t>(gray.width), PixelLayout::kGray8, true},
-                       &loaded_.gray);
+      status =
+          to_gray({gray.pixels, gray.width, gray.height, static_cast<std::size_t>(gray.width), PixelLayout::kGray8, true}, &loaded_.gray);
     if (!status || !options_.wants_color) return status;
     Result<ColorImage> color = decode_color(bytes_, "colour image");
     if (!color) return color.status();
-    return to_bgr({color->pixels, color->width, color->height, 3 * static_cast<std::size_t>(color->width), PixelLayout::kRgb24,
-                   format.is_mirrored},
-                  &loaded_.color);
+    return to_bgr(
+        {color->pixels, color->width, color->height, 3 * static_cast<std::size_t>(color->width), PixelLayout::kRgb24, format.is_mirrored},
+        &loaded_.color);
   }
 
   Status load_depth(const OniFrameEntry& entry) {
@@ -193,8 +193,7 @@ Status check_stream(const OniStream& stream, const std::string& name) {
   if (format.is_cropped) return {ErrorCode::kUnsupported, name + ": a recording of cropped images is not read"};
   const bool is_fine = format.width > 0 && format.height > 0 && format.width <= kMaxImageSide && format.height <= kMaxImageSide;
   if (!is_fine)
-    return {ErrorCode::kCorrupt,
-            name + ": images of " + std::to_string(format.width) + "x" + std::to_string(format.height) + " pixels"};
+    return {ErrorCode::kCorrupt, name + ": images of " + std::to_string(format.width) + "x" + std::to_string(format.height) + " pixels"};
   const bool is_depth = stream.node == OniNode::kDepth;
   const bool is_depth_codec = stream.codec == OniCodec::k16z || stream.codec == OniCodec::k16zTable;
   if (stream.codec == OniCodec::kNone || (is_depth ? is_depth_codec : stream.codec == OniCodec::kJpeg)) return Status::ok();
@@ -228,8 +227,7 @@ Result<OniRecording> select_recording(const SourceUrl& url) {
       select_frames(url.text_option("frames", ""), url.text_option("exclude", ""), recording.num_recorded);
   if (!chosen) return chosen.status().with_context(url.path);
   if (chosen->empty())
-    return Status(ErrorCode::kInvalid,
-                  url.text + ": the selection leaves none of " + std::to_string(recording.num_recorded) + " frames");
+    return Status(ErrorCode::kInvalid, url.text + ": the selection leaves none of " + std::to_string(recording.num_recorded) + " frames");
   const std::vector<Pair> pairs = pair_frames(recording.color.frames, recording.depth.frames);
   for (const std::size_t index : *chosen) recording.frames.push_back(pairs[index]);
   return recording;
@@ -265,8 +263,7 @@ FrameSourceInfo describe(const std::string& path, const OniRecording& recording,
 
 Result<bool> flag_option(const SourceUrl& url, const std::string& key) {
   const std::string value = url.text_option(key, "0");
-  if (value != "0" && value != "1")
-    return Status(ErrorCode::kInvalid, url.text + ": option " + key + "=" + value + ": expected 0 or 1");
+  if (value != "0" && value != "1") return Status(ErrorCode::kInvalid, url.text + ": option " + key + "=" + value + ": expected 0 or 1");
   return value == "1";
 }
 

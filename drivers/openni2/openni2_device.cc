@@ -18,8 +18,7 @@ template <typename Value>
 std::optional<Value> stream_property(const Api& api, OniStreamHandle stream, int id) {
   Value value{};
   int size = sizeof(value);
-  if (api.stream_get_property(stream, id, &value, &size) != ONI_STATUS_OK || size != static_cast<int>(sizeof(value)))
-    return std::nullopt;
+  if (api.stream_get_property(stream, id, &value, &size) != ONI_STATUS_OK || size != static_cast<int>(sizeof(value))) return std::nullopt;
   return value;
 }
 
@@ -34,8 +33,7 @@ std::string serial_of(const Api& api, OniDeviceHandle device) {
 }
 
 /// The device with this serial number. Devices say it only when they are open.
-std::optional<DeviceEntry> find_serial(const Session& session, const std::vector<DeviceEntry>& devices,
-                                       const std::string& serial) {
+std::optional<DeviceEntry> find_serial(const Session& session, const std::vector<DeviceEntry>& devices, const std::string& serial) {
   for (const DeviceEntry& entry : devices) {
     OniDeviceHandle handle = nullptr;
     if (session.api().device_open(entry.uri.c_str(), &handle) != ONI_STATUS_OK) continue;
@@ -49,13 +47,11 @@ std::optional<DeviceEntry> find_serial(const Session& session, const std::vector
 Result<DeviceEntry> find_device(const Session& session, const std::string& selector) {
   const std::vector<DeviceEntry> devices = session.devices();
   if (devices.empty()) {
-    return Status(ErrorCode::kUnavailable,
-                  "OpenNI2 sees no device (" + session.library().path +
-                      "): is it plugged in, and does a driver for it lie in OpenNI2/Drivers? ask `camloc doctor`");
+    return Status(ErrorCode::kUnavailable, "OpenNI2 sees no device (" + session.library().path +
+                                               "): is it plugged in, and does a driver for it lie in OpenNI2/Drivers? ask `camloc doctor`");
   }
   if (selector.empty()) return devices.front();
-  const auto by_uri =
-      std::find_if(devices.begin(), devices.end(), [&selector](const DeviceEntry& entry) { return entry.uri == selector; });
+  const auto by_uri = std::find_if(devices.begin(), devices.end(), [&selector](const DeviceEntry& entry) { return entry.uri == selector; });
   if (by_uri != devices.end()) return *by_uri;
   std::size_t index = 0;
   const auto [rest, error] = std::from_chars(selector.data(), selector.data() + selector.size(), index);
@@ -63,8 +59,7 @@ Result<DeviceEntry> find_device(const Session& session, const std::string& selec
   if (const std::optional<DeviceEntry> entry = find_serial(session, devices, selector)) return *entry;
   std::string list;
   for (const DeviceEntry& entry : devices) list += (list.empty() ? "" : ", ") + entry.uri;
-  return Status(ErrorCode::kUnavailable,
-                "OpenNI2 sees no device with URI, index or serial number " + selector + "; it sees " + list);
+  return Status(ErrorCode::kUnavailable, "OpenNI2 sees no device with URI, index or serial number " + selector + "; it sees " + list);
 }
 
 }  // namespace
@@ -113,30 +108,26 @@ std::vector<VideoMode> Device::offered_modes(OniSensorType sensor) const {
 Status Device::open_streams(const ModeRequest& request) {
   is_infrared_ = offered_modes(ONI_SENSOR_COLOR).empty();
   if (is_infrared_ && offered_modes(ONI_SENSOR_IR).empty()) {
-    return {ErrorCode::kUnsupported,
-            "OpenNI2 device " + entry_.uri + ": has no colour nor infrared image; localization needs one"};
+    return {ErrorCode::kUnsupported, "OpenNI2 device " + entry_.uri + ": has no colour nor infrared image; localization needs one"};
   }
   if (Status status = open_stream(is_infrared_ ? ONI_SENSOR_IR : ONI_SENSOR_COLOR, request, &image_); !status) return status;
   if (offered_modes(ONI_SENSOR_DEPTH).empty()) return Status::ok();
   // Registered depth has the pixels of the image, so the same size comes first.
   const ModeRequest like_image{image_.mode.width, image_.mode.height, image_.mode.fps};
   const bool fits = choose_mode(offered_modes(ONI_SENSOR_DEPTH), StreamUse::kDepth, like_image).has_value();
-  if (Status status = open_stream(ONI_SENSOR_DEPTH, fits ? like_image : ModeRequest{0, 0, request.fps}, &depth_); !status)
-    return status;
+  if (Status status = open_stream(ONI_SENSOR_DEPTH, fits ? like_image : ModeRequest{0, 0, request.fps}, &depth_); !status) return status;
   set_registration();
-  is_synchronized_ = api().device_enable_depth_color_sync(handle_) == ONI_STATUS_OK &&
-                     api().device_get_depth_color_sync_enabled(handle_) != FALSE;
+  is_synchronized_ =
+      api().device_enable_depth_color_sync(handle_) == ONI_STATUS_OK && api().device_get_depth_color_sync_enabled(handle_) != FALSE;
   return Status::ok();
 }
 
 Status Device::open_stream(OniSensorType sensor, const ModeRequest& request, Stream* stream) {
   const char* name = sensor == ONI_SENSOR_DEPTH ? "depth" : sensor == ONI_SENSOR_COLOR ? "colour" : "infrared";
   const std::vector<VideoMode> offered = offered_modes(sensor);
-  const std::optional<VideoMode> mode =
-      choose_mode(offered, sensor == ONI_SENSOR_DEPTH ? StreamUse::kDepth : StreamUse::kImage, request);
+  const std::optional<VideoMode> mode = choose_mode(offered, sensor == ONI_SENSOR_DEPTH ? StreamUse::kDepth : StreamUse::kImage, request);
   if (!mode)
-    return {ErrorCode::kUnsupported,
-            "OpenNI2 device " + entry_.uri + ": no " + name + " mode fits; it offers " + describe(offered)};
+    return {ErrorCode::kUnsupported, "OpenNI2 device " + entry_.uri + ": no " + name + " mode fits; it offers " + describe(offered)};
   if (api().device_create_stream(handle_, sensor, &stream->handle) != ONI_STATUS_OK) {
     stream->handle = nullptr;
     return error(std::string("its ") + name + " stream cannot be opened");
@@ -144,8 +135,7 @@ Status Device::open_stream(OniSensorType sensor, const ModeRequest& request, Str
   const OniVideoMode wanted{static_cast<OniPixelFormat>(mode->oni_pixel_format), mode->width, mode->height, mode->fps};
   (void)api().stream_set_property(stream->handle, ONI_STREAM_PROPERTY_VIDEO_MODE, &wanted, sizeof(wanted));
   const auto got = stream_property<OniVideoMode>(api(), stream->handle, ONI_STREAM_PROPERTY_VIDEO_MODE);
-  if (!got || got->pixelFormat != wanted.pixelFormat || got->resolutionX != wanted.resolutionX ||
-      got->resolutionY != wanted.resolutionY) {
+  if (!got || got->pixelFormat != wanted.pixelFormat || got->resolutionX != wanted.resolutionX || got->resolutionY != wanted.resolutionY) {
     return error(std::string("its ") + name + " stream refuses the mode " + describe(*mode) + " that it offers");
   }
   stream->mode = {got->pixelFormat, got->resolutionX, got->resolutionY, got->fps > 0 ? got->fps : mode->fps};
@@ -161,8 +151,7 @@ Status Device::open_stream(OniSensorType sensor, const ModeRequest& request, Str
 }
 
 void Device::set_registration() {
-  if (is_infrared_ || api().device_is_image_registration_mode_supported(handle_, ONI_IMAGE_REGISTRATION_DEPTH_TO_COLOR) == FALSE)
-    return;
+  if (is_infrared_ || api().device_is_image_registration_mode_supported(handle_, ONI_IMAGE_REGISTRATION_DEPTH_TO_COLOR) == FALSE) return;
   const OniImageRegistrationMode mode = ONI_IMAGE_REGISTRATION_DEPTH_TO_COLOR;
   (void)api().device_set_property(handle_, ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION, &mode, sizeof(mode));
 }
@@ -201,9 +190,8 @@ void Device::disable_sync() {
 
 std::string Device::description() const {
   const OniVersion& version = session_->library().version;
-  std::string text = "OpenNI2 " + entry_.vendor + " " + entry_.name + " at " + entry_.uri +
-                     (serial_.empty() ? "" : ", serial " + serial_) + ", " + (is_infrared_ ? "infrared " : "colour ") +
-                     describe(image_.mode);
+  std::string text = "OpenNI2 " + entry_.vendor + " " + entry_.name + " at " + entry_.uri + (serial_.empty() ? "" : ", serial " + serial_) +
+                     ", " + (is_infrared_ ? "infrared " : "colour ") + describe(image_.mode);
   if (has_depth()) {
     text += ", depth " + describe(depth_.mode);
     text += is_registered_ ? ", registered to colour"

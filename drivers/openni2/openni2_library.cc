@@ -31,8 +31,7 @@ bool find_symbol(void* handle, const char* name, Function* function, std::string
 }
 
 bool find_all(void* handle, Api* api, std::string* missing) {
-  return find_symbol(handle, "oniInitialize", &api->initialize, missing) &&
-         find_symbol(handle, "oniShutdown", &api->shutdown, missing) &&
+  return find_symbol(handle, "oniInitialize", &api->initialize, missing) && find_symbol(handle, "oniShutdown", &api->shutdown, missing) &&
          find_symbol(handle, "oniGetVersion", &api->get_version, missing) &&
          find_symbol(handle, "oniGetExtendedError", &api->get_extended_error, missing) &&
          find_symbol(handle, "oniSetLogConsoleOutput", &api->set_log_console_output, missing) &&
@@ -52,8 +51,7 @@ bool find_all(void* handle, Api* api, std::string* missing) {
          find_symbol(handle, "oniDeviceGetDepthColorSyncEnabled", &api->device_get_depth_color_sync_enabled, missing) &&
          find_symbol(handle, "oniDeviceGetProperty", &api->device_get_property, missing) &&
          find_symbol(handle, "oniDeviceSetProperty", &api->device_set_property, missing) &&
-         find_symbol(handle, "oniDeviceIsImageRegistrationModeSupported", &api->device_is_image_registration_mode_supported,
-                     missing) &&
+         find_symbol(handle, "oniDeviceIsImageRegistrationModeSupported", &api->device_is_image_registration_mode_supported, missing) &&
          find_symbol(handle, "oniStreamDestroy", &api->stream_destroy, missing) &&
          find_symbol(handle, "oniStreamStart", &api->stream_start, missing) &&
          find_symbol(handle, "oniStreamStop", &api->stream_stop, missing) &&
@@ -76,14 +74,13 @@ Result<LoadedLibrary> load() {
   if (::dlinfo(handle, RTLD_DI_LINKMAP, &map) == 0 && map != nullptr && map->l_name != nullptr) library.path = map->l_name;
   std::string missing;
   if (!find_all(handle, &library.api, &missing)) {
-    return Status(ErrorCode::kUnsupported, library.path + ": has no function " + missing +
-                                               "; version 2.2 of OpenNI2 is expected, as in the package libopenni2-0");
+    return Status(ErrorCode::kUnsupported,
+                  library.path + ": has no function " + missing + "; version 2.2 of OpenNI2 is expected, as in the package libopenni2-0");
   }
   library.version = library.api.get_version();
   if (library.version.major != ONI_VERSION_MAJOR || library.version.minor < ONI_VERSION_MINOR) {
     return Status(ErrorCode::kUnsupported, library.path + ": is version " + std::to_string(library.version.major) + "." +
-                                               std::to_string(library.version.minor) +
-                                               "; 2.2 is expected, as in the package libopenni2-0");
+                                               std::to_string(library.version.minor) + "; 2.2 is expected, as in the package libopenni2-0");
   }
   return library;
 }
@@ -134,17 +131,15 @@ Result<std::shared_ptr<Session>> Session::acquire() {
   if (api.initialize(ONI_API_VERSION) != ONI_STATUS_OK) {
     const std::string why = last_error_of(api);
     api.shutdown();  // a failed start counts as one
-    return Status(ErrorCode::kUnavailable,
-                  library.value()->path + ": OpenNI2 does not start (" + why +
-                      "): it expects its drivers in the folder OpenNI2/Drivers beside it; ask `camloc doctor`");
+    return Status(ErrorCode::kUnavailable, library.value()->path + ": OpenNI2 does not start (" + why +
+                                               "): it expects its drivers in the folder OpenNI2/Drivers beside it; ask `camloc doctor`");
   }
   const std::shared_ptr<Session> session(new Session(*library.value()), [](Session* expired) {
     const std::lock_guard<std::mutex> last(shared().mutex);
     delete expired;
   });
   OniDeviceCallbacks callbacks{nullptr, on_disconnected, on_state};
-  if (api.register_device_callbacks(&callbacks, session.get(), &session->callbacks_) != ONI_STATUS_OK)
-    session->callbacks_ = nullptr;
+  if (api.register_device_callbacks(&callbacks, session.get(), &session->callbacks_) != ONI_STATUS_OK) session->callbacks_ = nullptr;
   shared().session = session;
   return session;
 }
@@ -160,8 +155,7 @@ std::vector<DeviceEntry> Session::devices() const {
   int count = 0;
   if (api().get_device_list(&list, &count) != ONI_STATUS_OK) return result;
   for (int i = 0; i < count; ++i) {
-    result.push_back(
-        {text_of(list[i].uri), text_of(list[i].vendor), text_of(list[i].name), list[i].usbVendorId, list[i].usbProductId});
+    result.push_back({text_of(list[i].uri), text_of(list[i].vendor), text_of(list[i].name), list[i].usbVendorId, list[i].usbProductId});
   }
   api().release_device_list(list);
   return result;

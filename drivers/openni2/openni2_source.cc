@@ -48,9 +48,7 @@ using Entries = std::array<Entry, 3>;
 
 /// A free place, or that of the oldest frame.
 Entry* place_in(Entries* entries) {
-  const auto is_older = [](const Entry& a, const Entry& b) {
-    return a.is_fresh != b.is_fresh ? !a.is_fresh : a.arrival_ns < b.arrival_ns;
-  };
+  const auto is_older = [](const Entry& a, const Entry& b) { return a.is_fresh != b.is_fresh ? !a.is_fresh : a.arrival_ns < b.arrival_ns; };
   return &*std::min_element(entries->begin(), entries->end(), is_older);
 }
 
@@ -127,13 +125,11 @@ class Openni2Source final : public FrameSource {
     const openni2::Api& api = device_->session().api();
     OniStreamHandle streams[2] = {device_->image().handle, device_->depth().handle};
     int index = -1;
-    const OniStatus waited =
-        api.wait_for_any_stream(streams, device_->has_depth() ? 2 : 1, &index, static_cast<int>(timeout.count()));
+    const OniStatus waited = api.wait_for_any_stream(streams, device_->has_depth() ? 2 : 1, &index, static_cast<int>(timeout.count()));
     if (waited == ONI_STATUS_TIME_OUT) return false;
     if (waited != ONI_STATUS_OK || index < 0 || index > 1) return library_error("waiting for a frame failed");
     OniFrame* raw = nullptr;
-    if (api.stream_read_frame(streams[index], &raw) != ONI_STATUS_OK || raw == nullptr)
-      return library_error("reading a frame failed");
+    if (api.stream_read_frame(streams[index], &raw) != ONI_STATUS_OK || raw == nullptr) return library_error("reading a frame failed");
     const Status status = keep(*raw, index == 0);
     api.frame_release(raw);
     if (status) return true;
@@ -142,8 +138,7 @@ class Openni2Source final : public FrameSource {
   }
 
   [[nodiscard]] Status library_error(const std::string& what) const {
-    return {ErrorCode::kUnavailable,
-            "OpenNI2 device " + device_->uri() + ": " + what + " (" + device_->session().last_error() + ")"};
+    return {ErrorCode::kUnavailable, "OpenNI2 device " + device_->uri() + ": " + what + " (" + device_->session().last_error() + ")"};
   }
 
   Status keep(const OniFrame& raw, bool is_image) {
@@ -158,8 +153,8 @@ class Openni2Source final : public FrameSource {
     if (raw.data == nullptr || raw.dataSize <= 0 || raw.stride <= 0) return bad("empty");
     if (raw.width != stream.mode.width || raw.height != stream.mode.height || raw.croppingEnabled != FALSE ||
         raw.videoMode.pixelFormat != stream.mode.oni_pixel_format) {
-      return bad(std::to_string(raw.width) + "x" + std::to_string(raw.height) + " in format " +
-                 std::to_string(raw.videoMode.pixelFormat) + " instead of " + describe(stream.mode));
+      return bad(std::to_string(raw.width) + "x" + std::to_string(raw.height) + " in format " + std::to_string(raw.videoMode.pixelFormat) +
+                 " instead of " + describe(stream.mode));
     }
     if (raw.timestamp > kMaxStampUs) return bad("stamp out of range");
     const RawImage pixels{{static_cast<const std::uint8_t*>(raw.data), static_cast<std::size_t>(raw.dataSize)},
@@ -276,8 +271,7 @@ Result<std::unique_ptr<FrameSource>> open_openni2_source(const SourceUrl& url, c
   if (!device) return device.status();
   if (Status status = (*device)->start(); !status) return status;
   FrameSourceInfo info = describe(**device);
-  return std::unique_ptr<FrameSource>(
-      std::make_unique<Openni2Source>(std::move(device).value(), std::move(info), options.wants_color));
+  return std::unique_ptr<FrameSource>(std::make_unique<Openni2Source>(std::move(device).value(), std::move(info), options.wants_color));
 }
 
 }  // namespace camloc

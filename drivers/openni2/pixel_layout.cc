@@ -16,9 +16,7 @@ namespace {
 std::uint8_t clamp_to_byte(int value) { return static_cast<std::uint8_t>(std::clamp(value, 0, 255)); }
 
 /// ITU-R BT.601 with 8-bit fixed-point weights, from R'G'B' of full range.
-std::uint8_t luma(const Bgr& pixel) {
-  return static_cast<std::uint8_t>((77 * pixel.r + 150 * pixel.g + 29 * pixel.b + 128) >> 8);
-}
+std::uint8_t luma(const Bgr& pixel) { return static_cast<std::uint8_t>((77 * pixel.r + 150 * pixel.g + 29 * pixel.b + 128) >> 8); }
 
 /// BT.601 limited range (16..235, 16..240) to full range, 8-bit fixed point.
 Bgr from_yuv(int y, int u, int v) {
@@ -32,9 +30,7 @@ std::uint8_t luma_of_limited(int y) { return clamp_to_byte((298 * (y - 16) + 128
 
 std::uint16_t load_u16(const std::uint8_t* bytes) { return static_cast<std::uint16_t>(bytes[0] | bytes[1] << 8); }
 
-std::uint8_t infrared_to_byte(const std::uint8_t* bytes) {
-  return static_cast<std::uint8_t>(std::min(255, load_u16(bytes) >> 2));
-}
+std::uint8_t infrared_to_byte(const std::uint8_t* bytes) { return static_cast<std::uint8_t>(std::min(255, load_u16(bytes) >> 2)); }
 
 /// Pixel x of a row, per layout. A pair of YUV pixels shares its chroma.
 std::uint8_t gray_at(PixelLayout layout, const std::uint8_t* row, int x) {
@@ -132,8 +128,8 @@ Status check_raw_image(const RawImage& image) {
   constexpr int kMaxSide = 16384;
   // The words are put together on an error alone: this is on the path of every frame.
   const auto bad = [&image](const std::string& why) {
-    return Status(ErrorCode::kCorrupt, "image of " + std::to_string(image.width) + "x" + std::to_string(image.height) + " " +
-                                           name_of(image.layout) + " " + why);
+    return Status(ErrorCode::kCorrupt,
+                  "image of " + std::to_string(image.width) + "x" + std::to_string(image.height) + " " + name_of(image.layout) + " " + why);
   };
   if (image.width <= 0 || image.height <= 0 || image.width > kMaxSide || image.height > kMaxSide) return bad("is out of range");
   const bool has_pairs = image.layout == PixelLayout::kUyvy || image.layout == PixelLayout::kYuyv;
@@ -144,8 +140,8 @@ Status check_raw_image(const RawImage& image) {
   const bool is_fine = image.stride_bytes >= row_bytes && image.bytes.size() >= row_bytes &&
                        (image.bytes.size() - row_bytes) / image.stride_bytes >= static_cast<std::size_t>(image.height - 1);
   if (is_fine) return Status::ok();
-  return bad("with " + std::to_string(image.stride_bytes) + " bytes a row does not fit into " +
-             std::to_string(image.bytes.size()) + " bytes");
+  return bad("with " + std::to_string(image.stride_bytes) + " bytes a row does not fit into " + std::to_string(image.bytes.size()) +
+             " bytes");
 }
 
 Status to_gray(const RawImage& image, Image<std::uint8_t>* gray) { return convert(image, gray, gray_at); }
@@ -156,8 +152,7 @@ Status to_depth(const RawImage& image, Image<std::uint16_t>* depth) {
   if (image.layout != PixelLayout::kDepth16)
     return {ErrorCode::kUnsupported, std::string("pixels of layout ") + name_of(image.layout) + " are no depth"};
   if (Status status = check_raw_image(image); !status) return status;
-  convert_rows<PixelLayout::kDepth16>(image, depth,
-                                      [](PixelLayout, const std::uint8_t* row, int x) { return load_u16(row + 2 * x); });
+  convert_rows<PixelLayout::kDepth16>(image, depth, [](PixelLayout, const std::uint8_t* row, int x) { return load_u16(row + 2 * x); });
   return Status::ok();
 }
 

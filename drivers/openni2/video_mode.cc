@@ -40,8 +40,8 @@ std::optional<VideoMode> choose_mode(const std::vector<VideoMode>& offered, Stre
       continue;
     if ((request.width > 0 && mode.width != request.width) || (request.height > 0 && mode.height != request.height)) continue;
     if (request.fps > 0 && mode.fps != request.fps) continue;
-    const std::tuple rank(std::abs(mode.width - kUsual.width) + std::abs(mode.height - kUsual.height),
-                          std::abs(mode.fps - kUsual.fps), *rank_of_format);
+    const std::tuple rank(std::abs(mode.width - kUsual.width) + std::abs(mode.height - kUsual.height), std::abs(mode.fps - kUsual.fps),
+                          *rank_of_format);
     if (best && rank >= best_rank) continue;
     best = mode;
     best_rank = rank;
@@ -52,8 +52,7 @@ std::optional<VideoMode> choose_mode(const std::vector<VideoMode>& offered, Stre
 std::string describe(const VideoMode& mode) {
   const std::optional<PixelFormat> format = pixel_format_of(mode.oni_pixel_format);
   std::string pixels = "format " + std::to_string(mode.oni_pixel_format);
-  if (format)
-    pixels = format->depth_unit_m <= 0 ? name_of(format->layout) : format->depth_unit_m > 5e-4 ? "in 1 mm" : "in 0.1 mm";
+  if (format) pixels = format->depth_unit_m <= 0 ? name_of(format->layout) : format->depth_unit_m > 5e-4 ? "in 1 mm" : "in 0.1 mm";
   return std::to_string(mode.width) + "x" + std::to_string(mode.height) + "@" + std::to_string(mode.fps) + " " + pixels;
 }
 

@@ -31,8 +31,7 @@ enum class StreamUse { kDepth, kImage };
 
 /// The mode for the request, or nothing where no mode that is read has the size and rate asked for. Depth in millimetres is
 /// preferred to tenths of them, whose 16 bits end at 6.5 m; RGB to YUV to grey, as RGB is what every device has been tried with.
-[[nodiscard]] std::optional<VideoMode> choose_mode(const std::vector<VideoMode>& offered, StreamUse use,
-                                                   const ModeRequest& request);
+[[nodiscard]] std::optional<VideoMode> choose_mode(const std::vector<VideoMode>& offered, StreamUse use, const ModeRequest& request);
 
 /// "640x480@30 RGB888"; the number of a format that is not read.
 [[nodiscard]] std::string describe(const VideoMode& mode);

@@ -73,7 +73,7 @@ std::optional<std::int64_t> menu_entry(const V4l2Device& device, const V4l2Contr
     entry.id = control.id;
     entry.index = static_cast<std::uint32_t>(i);
     if (control.type != V4L2_CTRL_TYPE_MENU || device.ioctl(VIDIOC_QUERYMENU, &entry) != 0) continue;  // menus have gaps
-    __u8 name[sizeof(entry.name)];  // the structure is packed
+    __u8 name[sizeof(entry.name)];                                                                     // the structure is packed
     std::copy_n(entry.name, sizeof(name), name);
     if (name_of(name) == control_name(wanted)) return i;
   }
@@ -163,7 +163,8 @@ Status set_v4l2_controls(const V4l2Device& device, const std::map<std::string, s
   };
   for (const auto& [name, value] : wanted) {
     if (find(name) != controls.end()) continue;
-    return {ErrorCode::kInvalid, device.path() + ": no control " + in_quotes(name) + "; '" + device.card() + "' has " + names_line(controls)};
+    return {ErrorCode::kInvalid,
+            device.path() + ": no control " + in_quotes(name) + "; '" + device.card() + "' has " + names_line(controls)};
   }
   for (const bool switches : {true, false}) {
     for (const auto& [name, value] : wanted) {

@@ -47,7 +47,8 @@ void gray_of_packed(const std::uint8_t* row, int width, const V4l2PixelFormat& f
   std::uint16_t piece[kPiece];
   for (int x = 0; x < width; x += kPiece) {
     const int count = std::min(kPiece, width - x);
-    unpack_pixels(row + packed_bytes(static_cast<std::size_t>(x), format.row_bits), static_cast<std::size_t>(count), format.row_bits, piece);
+    unpack_pixels(row + packed_bytes(static_cast<std::size_t>(x), format.row_bits), static_cast<std::size_t>(count), format.row_bits,
+                  piece);
     for (int i = 0; i < count; ++i) gray[x + i] = static_cast<std::uint8_t>(std::min(piece[i] >> shift, 255));
   }
 }
@@ -55,8 +56,12 @@ void gray_of_packed(const std::uint8_t* row, int width, const V4l2PixelFormat& f
 void gray_row(const V4l2ImageLayout& layout, const std::uint8_t* row, unsigned shift, std::uint8_t* gray) {
   const int width = layout.width;
   switch (layout.format->layout) {
-    case PixelLayout::kYuyv: for (int x = 0; x < width; ++x) gray[x] = row[2 * x]; break;
-    case PixelLayout::kUyvy: for (int x = 0; x < width; ++x) gray[x] = row[2 * x + 1]; break;
+    case PixelLayout::kYuyv:
+      for (int x = 0; x < width; ++x) gray[x] = row[2 * x];
+      break;
+    case PixelLayout::kUyvy:
+      for (int x = 0; x < width; ++x) gray[x] = row[2 * x + 1];
+      break;
     case PixelLayout::kWords: gray_of_words<false>(row, width, shift, gray); break;
     case PixelLayout::kWordsBe: gray_of_words<true>(row, width, shift, gray); break;
     case PixelLayout::kPacked: gray_of_packed(row, width, *layout.format, shift, gray); break;
@@ -115,7 +120,9 @@ struct YuvPlaces {
 void bgr_rows_of_yuv(const V4l2ImageLayout& layout, const V4l2Planes& planes, Image<Bgr>* color) {
   const YuvToBgr convert(layout.encoding);
   const PixelLayout kind = layout.format->layout;
-  const YuvPlaces at = kind == PixelLayout::kYuyv ? YuvPlaces{2, 0, 1, 3, 4} : kind == PixelLayout::kUyvy ? YuvPlaces{2, 1, 0, 2, 4} : YuvPlaces{1, 0, 0, 1, 2};
+  const YuvPlaces at = kind == PixelLayout::kYuyv   ? YuvPlaces{2, 0, 1, 3, 4}
+                       : kind == PixelLayout::kUyvy ? YuvPlaces{2, 1, 0, 2, 4}
+                                                    : YuvPlaces{1, 0, 0, 1, 2};
   for (int y = 0; y < layout.height; ++y) {
     const std::uint8_t* luma = row_of(layout, planes, 0, y);
     const std::uint8_t* chroma = kind == PixelLayout::kNv12 ? nv12_chroma_row(layout, planes, y) : luma;
@@ -170,8 +177,12 @@ void convert_to_depth(const V4l2ImageLayout& layout, const V4l2Planes& planes, I
     std::uint16_t* out = depth->row(y);
     switch (layout.format->layout) {
       case PixelLayout::kPacked: unpack_pixels(row, width, layout.format->row_bits, out); break;
-      case PixelLayout::kWordsBe: for (std::size_t x = 0; x < width; ++x) out[x] = word_at<true>(row + 2 * x); break;
-      default: for (std::size_t x = 0; x < width; ++x) out[x] = word_at<false>(row + 2 * x); break;
+      case PixelLayout::kWordsBe:
+        for (std::size_t x = 0; x < width; ++x) out[x] = word_at<true>(row + 2 * x);
+        break;
+      default:
+        for (std::size_t x = 0; x < width; ++x) out[x] = word_at<false>(row + 2 * x);
+        break;
     }
   }
 }

@@ -35,10 +35,12 @@ using V4l2Planes = std::array<std::span<const std::uint8_t>, 2>;
 
 /// Grey of an image format. Y of the YUV formats is taken as it is, Bayer pixels go through bayer_to_gray(), and of wider pixels
 /// the upper 8 of `significant_bits` (8 to 16) are kept; brighter ones saturate. kCorrupt: the JPEG is broken or of another size.
-[[nodiscard]] Status convert_to_gray(const V4l2ImageLayout& layout, const V4l2Planes& planes, unsigned significant_bits, Image<std::uint8_t>* gray);
+[[nodiscard]] Status convert_to_gray(const V4l2ImageLayout& layout, const V4l2Planes& planes, unsigned significant_bits,
+                                     Image<std::uint8_t>* gray);
 
 /// Colour of a format that has some; errors as above. `scratch` is reused from frame to frame.
-[[nodiscard]] Status convert_to_bgr(const V4l2ImageLayout& layout, const V4l2Planes& planes, Image<std::uint8_t>* scratch, Image<Bgr>* color);
+[[nodiscard]] Status convert_to_bgr(const V4l2ImageLayout& layout, const V4l2Planes& planes, Image<std::uint8_t>* scratch,
+                                    Image<Bgr>* color);
 
 /// Raw values of a depth format.
 void convert_to_depth(const V4l2ImageLayout& layout, const V4l2Planes& planes, Image<std::uint16_t>* depth);

@@ -126,9 +126,7 @@ Result<V4l2Device> V4l2Device::open(V4l2Io& io, const std::string& path) {
   return device;
 }
 
-std::uint32_t V4l2Device::buffer_type() const {
-  return is_multiplanar_ ? V4L2_BUF_TYPE_VIDEO_CAPTURE_MPLANE : V4L2_BUF_TYPE_VIDEO_CAPTURE;
-}
+std::uint32_t V4l2Device::buffer_type() const { return is_multiplanar_ ? V4L2_BUF_TYPE_VIDEO_CAPTURE_MPLANE : V4L2_BUF_TYPE_VIDEO_CAPTURE; }
 
 std::vector<V4l2FormatOffer> V4l2Device::offers() const {
   std::vector<V4l2FormatOffer> offers;

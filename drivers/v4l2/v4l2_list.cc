@@ -30,7 +30,8 @@ std::string first_line(const fs::path& path) {
   file.read(text, sizeof(text) - 1);
   const std::string_view line = std::string_view(text).substr(0, std::string_view(text).find('\n'));
   std::string result(trimmed(line));
-  std::replace_if(result.begin(), result.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
+  std::replace_if(
+      result.begin(), result.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
   return result;
 }
 

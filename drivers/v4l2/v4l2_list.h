@@ -29,7 +29,7 @@ struct V4l2DeviceInfo {
   std::string by_id;     ///< the link in /dev/v4l/by-id; empty where udev made none
   std::string usb_node;  ///< /dev/bus/usb/BBB/DDD; empty for a device that is not on USB
   std::vector<V4l2FormatOffer> formats;
-  std::string problem;   ///< why the node could not be opened, in one line; empty where it could
+  std::string problem;  ///< why the node could not be opened, in one line; empty where it could
 };
 
 /// Every node that gives images, in the order of their numbers, and those that could not be asked (with `problem`). Nodes for

@@ -44,7 +44,8 @@ std::string wish_text(const V4l2Wish& wish) {
 }
 
 Status nothing_fits(const V4l2Device& device, const V4l2Wish& wish, const std::vector<V4l2FormatOffer>& offers) {
-  return {ErrorCode::kUnsupported, device.path() + ": '" + device.card() + "' does not offer " + wish_text(wish) + "; it offers " + offers_line(offers)};
+  return {ErrorCode::kUnsupported,
+          device.path() + ": '" + device.card() + "' does not offer " + wish_text(wish) + "; it offers " + offers_line(offers)};
 }
 
 bool is_rate(double rate_hz, double wanted_hz) { return std::abs(rate_hz - wanted_hz) <= kRateTolerance * wanted_hz; }
@@ -115,21 +116,35 @@ struct Answer {
 Answer answer_of(const v4l2_format& format, bool is_multiplanar) {
   if (is_multiplanar) {
     const v4l2_pix_format_mplane& p = format.fmt.pix_mp;
-    return {p.width, p.height, p.pixelformat, p.field, p.num_planes,
+    return {p.width,
+            p.height,
+            p.pixelformat,
+            p.field,
+            p.num_planes,
             {p.plane_fmt[0].bytesperline, p.plane_fmt[1].bytesperline},
             {p.plane_fmt[0].sizeimage, p.plane_fmt[1].sizeimage},
-            p.colorspace, p.ycbcr_enc, p.quantization};
+            p.colorspace,
+            p.ycbcr_enc,
+            p.quantization};
   }
   const v4l2_pix_format& p = format.fmt.pix;
   const bool has_extension = p.priv == V4L2_PIX_FMT_PRIV_MAGIC;
-  return {p.width, p.height, p.pixelformat, p.field, 1, {p.bytesperline, 0}, {p.sizeimage, 0},
-          p.colorspace, has_extension ? p.ycbcr_enc : 0, has_extension ? p.quantization : 0};
+  return {p.width,
+          p.height,
+          p.pixelformat,
+          p.field,
+          1,
+          {p.bytesperline, 0},
+          {p.sizeimage, 0},
+          p.colorspace,
+          has_extension ? p.ycbcr_enc : 0,
+          has_extension ? p.quantization : 0};
 }
 
 YuvEncoding encoding_of(const Answer& answer) {
   YuvEncoding encoding;
-  encoding.is_bt709 = answer.ycbcr_enc == V4L2_YCBCR_ENC_709 ||
-                      (answer.ycbcr_enc == V4L2_YCBCR_ENC_DEFAULT && answer.colorspace == V4L2_COLORSPACE_REC709);
+  encoding.is_bt709 =
+      answer.ycbcr_enc == V4L2_YCBCR_ENC_709 || (answer.ycbcr_enc == V4L2_YCBCR_ENC_DEFAULT && answer.colorspace == V4L2_COLORSPACE_REC709);
   encoding.is_full_range = answer.quantization == V4L2_QUANTIZATION_FULL_RANGE ||
                            (answer.quantization == V4L2_QUANTIZATION_DEFAULT && answer.colorspace == V4L2_COLORSPACE_JPEG);
   return encoding;
@@ -143,13 +158,15 @@ Status check_kind(const V4l2Device& device, const Choice& choice, const Answer& 
   const bool is_as_asked = answer.fourcc == choice.format->fourcc && answer.width == static_cast<std::uint32_t>(choice.width) &&
                            answer.height == static_cast<std::uint32_t>(choice.height);
   if (!is_as_asked) {
-    return {ErrorCode::kUnsupported, device.path() + ": asked for " + fourcc_name(choice.format->fourcc) + " " + std::to_string(choice.width) + "x" +
-                                         std::to_string(choice.height) + ", the device sets " + fourcc_name(answer.fourcc) + " " +
-                                         std::to_string(answer.width) + "x" + std::to_string(answer.height) + "; ask for that (format=, width=, height=)"};
+    return {ErrorCode::kUnsupported, device.path() + ": asked for " + fourcc_name(choice.format->fourcc) + " " +
+                                         std::to_string(choice.width) + "x" + std::to_string(choice.height) + ", the device sets " +
+                                         fourcc_name(answer.fourcc) + " " + std::to_string(answer.width) + "x" +
+                                         std::to_string(answer.height) + "; ask for that (format=, width=, height=)"};
   }
   const bool is_progressive = answer.field == V4L2_FIELD_NONE || answer.field == V4L2_FIELD_ANY || answer.field == V4L2_FIELD_INTERLACED ||
                               answer.field == V4L2_FIELD_INTERLACED_TB || answer.field == V4L2_FIELD_INTERLACED_BT;
-  if (!is_progressive) return {ErrorCode::kUnsupported, device.path() + ": the device gives single fields of interlaced video, not whole frames"};
+  if (!is_progressive)
+    return {ErrorCode::kUnsupported, device.path() + ": the device gives single fields of interlaced video, not whole frames"};
   if (answer.num_planes != choice.format->num_planes) {
     return contradiction(device, fourcc_name(answer.fourcc) + " in " + std::to_string(answer.num_planes) + " planes");
   }
@@ -170,7 +187,8 @@ Result<V4l2ImageLayout> checked_layout(const V4l2Device& device, const Choice& c
       return contradiction(device, "rows of " + std::to_string(stride) + " bytes for " + std::to_string(choice.width) + " pixels of " +
                                        fourcc_name(answer.fourcc) + ", which take " + std::to_string(row));
     }
-    const std::size_t bytes = answer.plane_bytes[plane], needed = min_plane_bytes(*choice.format, plane, choice.width, choice.height, stride);
+    const std::size_t bytes = answer.plane_bytes[plane],
+                      needed = min_plane_bytes(*choice.format, plane, choice.width, choice.height, stride);
     if (bytes < std::max<std::size_t>(needed, 1) || bytes > kMaxV4l2BufferBytes) {
       return contradiction(device, "buffers of " + std::to_string(bytes) + " bytes for frames of " + std::to_string(needed));
     }

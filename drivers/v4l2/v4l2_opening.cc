@@ -42,13 +42,17 @@ V4l2Role role_of_only_node(const V4l2Device& device, const V4l2Wish& wish) {
 
 Status no_node_named(const SourceUrl& url, V4l2Io& io, const V4l2Folders& folders) {
   std::string there;
-  for (const V4l2DeviceInfo& node : list_v4l2_devices(io, folders)) there += (there.empty() ? "" : ", ") + node.path + " '" + node.name + "'";
-  return {ErrorCode::kInvalid, url.text + ": names no camera; expected v4l2:///dev/videoN or v4l2://serial:XXXX; there is " + (there.empty() ? "none" : there)};
+  for (const V4l2DeviceInfo& node : list_v4l2_devices(io, folders))
+    there += (there.empty() ? "" : ", ") + node.path + " '" + node.name + "'";
+  return {ErrorCode::kInvalid,
+          url.text + ": names no camera; expected v4l2:///dev/videoN or v4l2://serial:XXXX; there is " + (there.empty() ? "none" : there)};
 }
 
 class Opener {
  public:
-  Opener(std::shared_ptr<V4l2Io> io, const V4l2Folders& folders, const SourceUrl& url) : url_(url), folders_(folders) { opened_.io = std::move(io); }
+  Opener(std::shared_ptr<V4l2Io> io, const V4l2Folders& folders, const SourceUrl& url) : url_(url), folders_(folders) {
+    opened_.io = std::move(io);
+  }
 
   Result<V4l2Opened> open(const FrameSourceOptions& options) {
     Result<V4l2Settings> settings = parse_v4l2_settings(url_, options);
@@ -87,7 +91,8 @@ class Opener {
       opened_.info.serial = info.serial;
       opened_.usb_node = info.usb_node;
     }
-    if (node->wish.role == V4l2Role::kImage && opened_.settings.depth.node.empty()) node->wish.role = role_of_only_node(*device, node->wish);
+    if (node->wish.role == V4l2Role::kImage && opened_.settings.depth.node.empty())
+      node->wish.role = role_of_only_node(*device, node->wish);
     Result<std::unique_ptr<V4l2Stream>> stream = open_stream(std::move(device).value(), *node);
     if (!stream) return stream.status();
     (node->wish.role == V4l2Role::kImage ? opened_.image : opened_.depth) = std::move(stream).value();
@@ -110,7 +115,8 @@ class Opener {
 
 }  // namespace
 
-Result<V4l2Opened> open_v4l2_nodes(std::shared_ptr<V4l2Io> io, const V4l2Folders& folders, const SourceUrl& url, const FrameSourceOptions& options) {
+Result<V4l2Opened> open_v4l2_nodes(std::shared_ptr<V4l2Io> io, const V4l2Folders& folders, const SourceUrl& url,
+                                   const FrameSourceOptions& options) {
   return Opener(std::move(io), folders, url).open(options);
 }
 

@@ -23,7 +23,7 @@ struct V4l2Opened {
   FrameSourceInfo info;                      ///< without description
   std::string usb_node;                      ///< of the image, or of depth alone; empty when not on USB
   V4l2Settings settings;
-  bool gives_color = false;                  ///< wanted, and the image has it
+  bool gives_color = false;  ///< wanted, and the image has it
 };
 
 /// Errors name the node and the reason; see V4l2Device::open(), negotiate_v4l2(), set_v4l2_controls() for their codes.

@@ -45,8 +45,8 @@ struct Alias {
   std::uint32_t fourcc;
 };
 constexpr Alias kAliases[] = {
-    {"MJPEG", V4L2_PIX_FMT_MJPEG}, {"NV12M", V4L2_PIX_FMT_NV12M}, {"BGGR", V4L2_PIX_FMT_SBGGR8}, {"Y8", V4L2_PIX_FMT_GREY},
-    {"Y16 -BE", V4L2_PIX_FMT_Y16_BE},
+    {"MJPEG", V4L2_PIX_FMT_MJPEG}, {"NV12M", V4L2_PIX_FMT_NV12M},    {"BGGR", V4L2_PIX_FMT_SBGGR8},
+    {"Y8", V4L2_PIX_FMT_GREY},     {"Y16 -BE", V4L2_PIX_FMT_Y16_BE},
 };
 
 constexpr std::uint32_t kBigEndianBit = 1U << 31;

@@ -37,9 +37,9 @@ struct V4l2PixelFormat {
   unsigned row_bits;          ///< of a pixel in the first plane; 0 for JPEG
   unsigned significant_bits;  ///< of a grey or depth value
   bool has_color;
-  bool can_be_image;          ///< colour, grey or infrared
+  bool can_be_image;  ///< colour, grey or infrared
   bool can_be_depth;
-  unsigned num_planes = 1;    ///< of memory; the two parts of NV12 share one
+  unsigned num_planes = 1;  ///< of memory; the two parts of NV12 share one
   BayerOrder order = BayerOrder::kRggb;
 
   [[nodiscard]] bool fits(V4l2Role role) const { return role == V4l2Role::kImage ? can_be_image : can_be_depth; }

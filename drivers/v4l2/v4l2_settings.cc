@@ -20,7 +20,8 @@ constexpr const char* kDepthControl = "depth_control.";
 /// The options "control.NAME" as NAME -> value, taken out of `options`.
 std::map<std::string, std::string> take_controls(const std::string& prefix, std::map<std::string, std::string>* options) {
   std::map<std::string, std::string> controls;
-  for (auto option = options->lower_bound(prefix); option != options->end() && option->first.starts_with(prefix); option = options->erase(option)) {
+  for (auto option = options->lower_bound(prefix); option != options->end() && option->first.starts_with(prefix);
+       option = options->erase(option)) {
     controls.emplace(option->first.substr(prefix.size()), option->second);
   }
   return controls;
@@ -31,7 +32,8 @@ Status whole_option(const SourceUrl& url, const std::string& key, int low, int h
   *is_given = url.options.contains(key);
   const Result<double> number = url.number_option(key, *value, low, high);
   if (!number) return number.status();
-  if (*number != std::floor(*number)) return {ErrorCode::kInvalid, url.text + ": option " + key + "=" + url.options.at(key) + ": expected a whole number"};
+  if (*number != std::floor(*number))
+    return {ErrorCode::kInvalid, url.text + ": option " + key + "=" + url.options.at(key) + ": expected a whole number"};
   *value = static_cast<int>(*number);
   return Status::ok();
 }
@@ -80,7 +82,8 @@ Result<V4l2Settings> parse_v4l2_settings(const SourceUrl& url, const FrameSource
   settings.image.controls = take_controls(kControl, &plain.options);
   settings.depth.controls = take_controls(kDepthControl, &plain.options);
   if (Status status = plain.check_options({"depth", "width", "height", "rate_hz", "format", "depth_width", "depth_height", "depth_rate_hz",
-                                           "depth_format", "gray_bits", "stamp_offset_ms", "camera", "depth_unit_m", "control.NAME", "depth_control.NAME"});
+                                           "depth_format", "gray_bits", "stamp_offset_ms", "camera", "depth_unit_m", "control.NAME",
+                                           "depth_control.NAME"});
       !status) {
     return status;
   }

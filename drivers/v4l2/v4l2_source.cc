@@ -30,8 +30,8 @@ std::string stream_text(const V4l2Stream& stream) {
   const V4l2ImageLayout& layout = stream.layout();
   char rate[32] = "";
   if (stream.rate_hz() > 0) std::snprintf(rate, sizeof(rate), " at %.4g Hz", stream.rate_hz());
-  return stream.device().path() + " '" + stream.device().card() + "' " + fourcc_name(layout.format->fourcc) + " " + std::to_string(layout.width) + "x" +
-         std::to_string(layout.height) + rate;
+  return stream.device().path() + " '" + stream.device().card() + "' " + fourcc_name(layout.format->fourcc) + " " +
+         std::to_string(layout.width) + "x" + std::to_string(layout.height) + rate;
 }
 
 std::string stamp_text(V4l2StampSource source) {
@@ -117,7 +117,8 @@ class V4l2Source final : public FrameSource {
   [[nodiscard]] Status reset_device() override {
     if (usb_node_.empty()) return {ErrorCode::kUnsupported, "v4l2://: the camera is not on USB"};
     const V4l2Fd device(*io_, io_->open(usb_node_));
-    if (device.get() < 0) return {ErrorCode::kUnsupported, usb_node_ + ": " + errno_text(device.get()) + "; a reset needs the right to write to it"};
+    if (device.get() < 0)
+      return {ErrorCode::kUnsupported, usb_node_ + ": " + errno_text(device.get()) + "; a reset needs the right to write to it"};
     for (Channel* channel : channels()) {
       channel->pending.reset();
       channel->stream.reset();

@@ -177,7 +177,8 @@ void V4l2Stream::give_back(const V4l2Frame& frame) {
 }
 
 Status V4l2Stream::problem() const {
-  if (error_ == -EPROTO) return {ErrorCode::kUnavailable, device_.path() + ": the driver (" + device_.driver() + ") hands out buffers that it does not have"};
+  if (error_ == -EPROTO)
+    return {ErrorCode::kUnavailable, device_.path() + ": the driver (" + device_.driver() + ") hands out buffers that it does not have"};
   return {ErrorCode::kUnavailable, device_.path() + ": the camera is gone (" + errno_text(error_) + ")"};
 }
 

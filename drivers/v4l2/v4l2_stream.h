@@ -30,9 +30,9 @@ enum class V4l2StampSource : std::uint8_t {
 /// A frame in a buffer of the kernel, until it is given back.
 struct V4l2Frame {
   unsigned index = 0;
-  V4l2Planes planes;          ///< checked to hold the frame that was agreed on
-  std::int64_t stamp_ns = 0;  ///< CLOCK_MONOTONIC at the start of exposure; later than that of the frame before
-  std::uint64_t exposure = 0; ///< counts those that were lost, too
+  V4l2Planes planes;           ///< checked to hold the frame that was agreed on
+  std::int64_t stamp_ns = 0;   ///< CLOCK_MONOTONIC at the start of exposure; later than that of the frame before
+  std::uint64_t exposure = 0;  ///< counts those that were lost, too
 };
 
 /// Not thread-safe. Allocates nothing after open(). The V4l2Io outlives it.
@@ -64,7 +64,7 @@ class V4l2Stream {
   [[nodiscard]] double rate_hz() const { return rate_hz_; }  ///< 0: the device does not tell
   /// Of the last frame; before the first what the buffers announce.
   [[nodiscard]] V4l2StampSource stamp_source() const { return stamp_source_; }
-  [[nodiscard]] std::uint64_t num_lost() const { return num_lost_; }        ///< gaps in the driver's count
+  [[nodiscard]] std::uint64_t num_lost() const { return num_lost_; }  ///< gaps in the driver's count
   [[nodiscard]] std::uint64_t num_damaged() const { return num_damaged_; }
 
  private:

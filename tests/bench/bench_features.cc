@@ -3,13 +3,13 @@
 //
 // Speed of extraction and matching beside cv::ORB and cv::BFMatcher. Images are generated; with CAMLOC_IMAGE set to a
 // binary PGM file, that image is used.
+#include <benchmark/benchmark.h>
+
 #include <cstdlib>
 #include <fstream>
-#include <random>
-
-#include <benchmark/benchmark.h>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <random>
 
 #include "core/features/corner_selection.h"
 #include "core/features/gaussian_blur.h"
@@ -113,8 +113,7 @@ void BM_StageDescriptor1000(benchmark::State& state) {
   const cv::Mat& image = bench_image();
   for (auto _ : state)
     for (int i = 0; i < 1000; ++i)
-      benchmark::DoNotOptimize(
-          orb_descriptor(image.ptr(20 + i * 7 % 400) + 20 + i * 13 % 500, image.cols, static_cast<float>(i % 360)));
+      benchmark::DoNotOptimize(orb_descriptor(image.ptr(20 + i * 7 % 400) + 20 + i * 13 % 500, image.cols, static_cast<float>(i % 360)));
 }
 BENCHMARK(BM_StageDescriptor1000)->Unit(benchmark::kMicrosecond);
 
@@ -129,9 +128,8 @@ void BM_NearestDescriptors(benchmark::State& state) {
   std::vector<NearestDescriptor> nearest(queries.size());
   for (auto _ : state) nearest_descriptors(queries, train, nearest.data(), kernel);
   state.SetLabel(to_string(kernel));
-  state.counters["per_comparison"] =
-      benchmark::Counter(1e3 * static_cast<double>(state.range(1)),
-                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["per_comparison"] = benchmark::Counter(1e3 * static_cast<double>(state.range(1)),
+                                                        benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(BM_NearestDescriptors)->ArgsProduct({{0, 1, 2, 3, 4}, {1000, 16000}})->Unit(benchmark::kMicrosecond);
 
@@ -141,9 +139,8 @@ void BM_OpenCvBruteForce(benchmark::State& state) {
   cv::BFMatcher matcher(cv::NORM_HAMMING);
   std::vector<std::vector<cv::DMatch>> matches;
   for (auto _ : state) matcher.knnMatch(a, b, matches, 2);
-  state.counters["per_comparison"] =
-      benchmark::Counter(1e3 * static_cast<double>(state.range(0)),
-                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["per_comparison"] = benchmark::Counter(1e3 * static_cast<double>(state.range(0)),
+                                                        benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(BM_OpenCvBruteForce)->Arg(1000)->Arg(16000)->Unit(benchmark::kMicrosecond);
 
@@ -184,8 +181,8 @@ void BM_GuidedMatcher(benchmark::State& state) {
     const Keypoint& keypoint = features.keypoints[feature];
     const auto shift = [&] { return static_cast<float>(random() % 11) - 5; };
     landmarks.push_back({static_cast<std::int32_t>(i), keypoint.u + shift(), keypoint.v + shift(), 12,
-                         static_cast<std::uint8_t>(std::max(0, keypoint.level - 1)),
-                         static_cast<std::uint8_t>(keypoint.level + 1), static_cast<std::uint32_t>(2 * i), 2});
+                         static_cast<std::uint8_t>(std::max(0, keypoint.level - 1)), static_cast<std::uint8_t>(keypoint.level + 1),
+                         static_cast<std::uint32_t>(2 * i), 2});
     descriptors.insert(descriptors.end(), 2, features.descriptors[feature]);
   }
   FeatureGrid grid(bench_image().cols, bench_image().rows, 1000);

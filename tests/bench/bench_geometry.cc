@@ -124,8 +124,8 @@ void opencv_pnp_ransac(benchmark::State& state) {
     const Input& input = inputs[i++ % kScenes];
     cv::Vec3d r, t;
     // OpenCV stops early once it is 99 % sure; ours always runs its 600 iterations.
-    const bool is_found = cv::solvePnPRansac(input.points, input.pixels, K, cv::noArray(), r, t, false, 600, 5.0F, 0.99,
-                                             cv::noArray(), cv::SOLVEPNP_P3P);
+    const bool is_found =
+        cv::solvePnPRansac(input.points, input.pixels, K, cv::noArray(), r, t, false, 600, 5.0F, 0.99, cv::noArray(), cv::SOLVEPNP_P3P);
     const Rigid3 T_map_camera = Rigid3{exp_so3({r[0], r[1], r[2]}), {t[0], t[1], t[2]}}.inverse();
     num_near += is_found && pose_error(input.T_map_camera, T_map_camera).head<3>().norm() < 0.05 ? 1 : 0;
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A frame of 640x480 pixels from the bytes of every format to grey, depth and colour.
+#include <benchmark/benchmark.h>
 #include <linux/videodev2.h>
 
 #include <cstdint>
@@ -11,8 +12,6 @@
 #include <iterator>
 #include <random>
 #include <vector>
-
-#include <benchmark/benchmark.h>
 
 #include "core/io/image_writer.h"
 #include "drivers/v4l2/v4l2_conversion.h"
@@ -26,7 +25,8 @@ std::vector<std::uint8_t> jpeg_bytes() {
   ColorImage image{{}, kWidth, kHeight};
   std::mt19937 random(1);
   for (int i = 0; i < kWidth * kHeight; ++i) {
-    for (const int level : {i % kWidth / 4, i / kWidth / 3, 128}) image.pixels.push_back(static_cast<std::uint8_t>(level + static_cast<int>(random() % 32)));
+    for (const int level : {i % kWidth / 4, i / kWidth / 3, 128})
+      image.pixels.push_back(static_cast<std::uint8_t>(level + static_cast<int>(random() % 32)));
   }
   std::string folder = (std::filesystem::temp_directory_path() / "camloc_bench_XXXXXX").string();
   if (::mkdtemp(folder.data()) == nullptr) return {};

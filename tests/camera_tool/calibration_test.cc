@@ -39,12 +39,14 @@ BoardCorners exact_corners(const Board& board, const Intrinsics& k, const Rigid3
   for (int id = 0; id < board.num_corners(); ++id) {
     const Eigen::Vector2d p = board.corner_m(id);
     corners.ids.push_back(id);
-    corners.pixels.push_back(k.project(T_camera_board * Eigen::Vector3d(p.x(), p.y(), 0)) + Eigen::Vector2d(normal(*random), normal(*random)));
+    corners.pixels.push_back(k.project(T_camera_board * Eigen::Vector3d(p.x(), p.y(), 0)) +
+                             Eigen::Vector2d(normal(*random), normal(*random)));
   }
   return corners;
 }
 
-std::vector<BoardView> exact_views(const Board& board, const Intrinsics& k, int count, double noise_px, std::uint32_t seed, double tilt_rad = 0.6) {
+std::vector<BoardView> exact_views(const Board& board, const Intrinsics& k, int count, double noise_px, std::uint32_t seed,
+                                   double tilt_rad = 0.6) {
   std::mt19937 random(seed);
   std::vector<BoardView> views;
   for (const Rigid3& T_camera_board : many_stands(board, k, count, tilt_rad, seed)) {
@@ -56,7 +58,8 @@ std::vector<BoardView> exact_views(const Board& board, const Intrinsics& k, int 
 /// Errors of fx fy cx cy over their standard deviations.
 std::array<double, 4> z_scores(const LensFit& fit, const Intrinsics& truth) {
   const Intrinsics& k = fit.intrinsics;
-  return {(k.fx - truth.fx) / fit.sigma[0], (k.fy - truth.fy) / fit.sigma[1], (k.cx - truth.cx) / fit.sigma[2], (k.cy - truth.cy) / fit.sigma[3]};
+  return {(k.fx - truth.fx) / fit.sigma[0], (k.fy - truth.fy) / fit.sigma[1], (k.cx - truth.cx) / fit.sigma[2],
+          (k.cy - truth.cy) / fit.sigma[3]};
 }
 
 TEST(LensFitTest, SigmasAreHonest) {
@@ -91,7 +94,8 @@ TEST(LensFitTest, SigmasAreHonest) {
 TEST(LensFitTest, AViewThatDoesNotFitIsDropped) {
   const Board board = board_of("chessboard:9x6:25mm");
   std::vector<BoardView> views = exact_views(board, small_kinect_lens(), 20, 0.1, 7);
-  for (Eigen::Vector2d& pixel : views[4].corners.pixels) pixel.x() += 0.02 * pixel.y() + (pixel.x() > 300 ? 4 : 0);  // moved while it was taken
+  for (Eigen::Vector2d& pixel : views[4].corners.pixels)
+    pixel.x() += 0.02 * pixel.y() + (pixel.x() > 300 ? 4 : 0);  // moved while it was taken
   const auto fit = fit_lens(board, views, 480, 360);
   ASSERT_TRUE(fit.is_ok()) << fit.status().message();
   EXPECT_EQ(fit->dropped, (std::vector<std::size_t>{4}));
@@ -116,8 +120,9 @@ TEST(BoardTest, ReadsBoards) {
   const Board charuco = board_of("charuco:7x5:40mm:30mm:DICT_4X4_50");
   EXPECT_EQ(charuco.num_corners(), 24);
   EXPECT_DOUBLE_EQ(charuco.marker_m, 0.03);
-  for (const char* text : {"", "chess", "chessboard", "chessboard:9", "chessboard:2x6:25mm", "chessboard:9x6:25", "chessboard:9x6:0mm", "chessboard:9x6:25mm:1",
-                           "chessboard:9x99999999999:25mm", "charuco:7x5:40mm", "charuco:7x5:40mm:40mm", "charuco:7x5:40mm:30mm:DICT_9X9_50", "charuco:20x20:40mm:30mm:DICT_4X4_50"}) {
+  for (const char* text : {"", "chess", "chessboard", "chessboard:9", "chessboard:2x6:25mm", "chessboard:9x6:25", "chessboard:9x6:0mm",
+                           "chessboard:9x6:25mm:1", "chessboard:9x99999999999:25mm", "charuco:7x5:40mm", "charuco:7x5:40mm:40mm",
+                           "charuco:7x5:40mm:30mm:DICT_9X9_50", "charuco:20x20:40mm:30mm:DICT_4X4_50"}) {
     EXPECT_EQ(parse_board(text).status().code(), ErrorCode::kInvalid) << text;
   }
 }
@@ -176,8 +181,8 @@ RgbdCamera registered_camera() {
   return camera;
 }
 
-Result<Calibration> calibrate_rendered(const char* board_text, const RgbdCamera& truth, double depth_scale, double depth_offset_m, int num_views,
-                                       std::string* report = nullptr, ColorImage* picture = nullptr) {
+Result<Calibration> calibrate_rendered(const char* board_text, const RgbdCamera& truth, double depth_scale, double depth_offset_m,
+                                       int num_views, std::string* report = nullptr, ColorImage* picture = nullptr) {
   CalibrationOptions options;
   options.board = board_of(board_text);
   options.known = truth;
@@ -188,7 +193,8 @@ Result<Calibration> calibrate_rendered(const char* board_text, const RgbdCamera&
   EXPECT_GT(views->views.size(), static_cast<std::size_t>(num_views) * 3 / 4);
   auto calibration = calibrate(*views, options);
   if (calibration && report != nullptr) *report = format_report(*calibration, *views);
-  if (calibration && picture != nullptr) *picture = draw_coverage({&options.board, views->views, &calibration->lens, calibration->held_out});
+  if (calibration && picture != nullptr)
+    *picture = draw_coverage({&options.board, views->views, &calibration->lens, calibration->held_out});
   return calibration;
 }
 

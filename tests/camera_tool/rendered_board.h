@@ -27,8 +27,9 @@ struct Print {
 inline Print print_of(const Board& board) {
   Print print;
   if (board.kind == Board::Kind::kCharuco) {
-    const auto charuco = cv::aruco::CharucoBoard::create(board.columns, board.rows, static_cast<float>(board.square_m), static_cast<float>(board.marker_m),
-                                                         cv::aruco::getPredefinedDictionary(board.dictionary));
+    const auto charuco =
+        cv::aruco::CharucoBoard::create(board.columns, board.rows, static_cast<float>(board.square_m), static_cast<float>(board.marker_m),
+                                        cv::aruco::getPredefinedDictionary(board.dictionary));
     cv::Mat drawn;
     const int margin = kTexelsPerSquare;
     charuco->draw({board.columns * kTexelsPerSquare + 2 * margin, board.rows * kTexelsPerSquare + 2 * margin}, drawn, margin, 1);
@@ -113,7 +114,8 @@ inline std::vector<Rigid3> many_stands(const Board& board, const Intrinsics& k, 
   while (static_cast<int>(stands.size()) < count) {
     const double distance_m = size_m * k.fx / (k.width * uniform(0.35, 0.75));
     const double turn = uniform(-std::numbers::pi, std::numbers::pi);
-    const Eigen::Quaterniond R = exp_so3(uniform(0.3, 1) * tilt_rad * Eigen::Vector3d(std::cos(turn), std::sin(turn), 0)) * exp_so3({0, 0, uniform(-0.3, 0.3)});
+    const Eigen::Quaterniond R =
+        exp_so3(uniform(0.3, 1) * tilt_rad * Eigen::Vector3d(std::cos(turn), std::sin(turn), 0)) * exp_so3({0, 0, uniform(-0.3, 0.3)});
     const Eigen::Vector2d pixel(uniform(0.15, 0.85) * k.width, uniform(0.15, 0.85) * k.height);
     const Eigen::Vector3d at = distance_m * k.undistort(pixel).homogeneous();
     const Rigid3 T_camera_board{R, at - R * Eigen::Vector3d(middle.x(), middle.y(), 0)};
@@ -129,7 +131,8 @@ inline std::vector<Rigid3> many_stands(const Board& board, const Intrinsics& k, 
 }
 
 /// Depth of the board, and of a wall half a metre behind it, in raw units of `camera` by its depth noise.
-inline Image<std::uint16_t> render_depth(const Board& board, const RgbdCamera& camera, const Rigid3& T_color_board, double scale, double offset_m, std::mt19937* random) {
+inline Image<std::uint16_t> render_depth(const Board& board, const RgbdCamera& camera, const Rigid3& T_color_board, double scale,
+                                         double offset_m, std::mt19937* random) {
   const Rigid3 T_board_depth = T_color_board.inverse() * camera.T_color_depth;
   const Eigen::Vector2d last = board.corner_m(board.num_corners() - 1);
   const UndistortionTable rays(camera.depth);

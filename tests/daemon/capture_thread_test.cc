@@ -161,7 +161,8 @@ TEST_F(CaptureThreadTest, RecordingEndsAfterItsLastFrame) {
 }
 
 TEST_F(CaptureThreadTest, CorruptFramesAndTimeoutsAreSkipped) {
-  CaptureThread capture(options_, opener({ErrorCode::kCorrupt, ErrorCode::kTimeout, kFrame, ErrorCode::kCorrupt, kFrame, ErrorCode::kEnd}), wake_.get());
+  CaptureThread capture(options_, opener({ErrorCode::kCorrupt, ErrorCode::kTimeout, kFrame, ErrorCode::kCorrupt, kFrame, ErrorCode::kEnd}),
+                        wake_.get());
   ASSERT_TRUE(wait_until([&] { return capture.report().phase == CapturePhase::kEnded; }));
   EXPECT_EQ(capture.counts().frames_received, 2U);
   EXPECT_EQ(capture.counts().frames_corrupt, 2U);

@@ -36,9 +36,7 @@ TEST(ConfigTest, TableIsSound) {
     Config config;
     EXPECT_TRUE(assign(setting, setting.default_value, &config)) << setting.name() << ": default is not allowed";
     EXPECT_EQ(value_of(setting, Config()), setting.default_value) << setting.name();
-    if (std::holds_alternative<std::int64_t Config::*>(setting.field)) {
-      EXPECT_LT(setting.min, setting.max) << setting.name();
-    }
+    if (std::holds_alternative<std::int64_t Config::*>(setting.field)) { EXPECT_LT(setting.min, setting.max) << setting.name(); }
   }
 }
 
@@ -76,7 +74,8 @@ TEST(ConfigTest, ErrorsNameFileLineAndReason) {
   EXPECT_NE(error_of("[map]\npath = [1]").find("test.toml:2: map.path: wrong type"), std::string::npos);
   EXPECT_EQ(error_of("[map]\npath = 'a'\npath = 'b'").substr(0, 12), "test.toml:3:");
   EXPECT_EQ(error_of("[map\n").substr(0, 10), "test.toml:");
-  EXPECT_EQ(error_of(std::string("[control]\nsocket = '/") + std::string(200, 'x') + "'"), "test.toml:2: control.socket: longer than 107 bytes");
+  EXPECT_EQ(error_of(std::string("[control]\nsocket = '/") + std::string(200, 'x') + "'"),
+            "test.toml:2: control.socket: longer than 107 bytes");
 }
 
 TEST(ConfigTest, WrongTextChangesNothing) {

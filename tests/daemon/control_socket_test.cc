@@ -171,7 +171,10 @@ TEST_F(ControlSocketTest, VanishedClientIsForgotten) {
   turns(3);
   const UniqueFd client = connect();
   say(client, "status\n");
-  { const UniqueFd leaver = connect(); say(leaver, "status\n"); }
+  {
+    const UniqueFd leaver = connect();
+    say(leaver, "status\n");
+  }
   turns(3);
   EXPECT_EQ(hear(client), "{\"ok\":true}\n<eof>");
 }

@@ -32,7 +32,7 @@ using testing::TestFolder;
 bool enter_private_network() {
   if (::unshare(CLONE_NEWNET) != 0) return false;
   const UniqueFd control(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-  ifreq interface{};
+  ifreq interface {};
   std::strcpy(interface.ifr_name, "lo");
   interface.ifr_flags = IFF_UP | IFF_RUNNING;
   if (::ioctl(control.get(), SIOCSIFFLAGS, &interface) != 0) return false;

@@ -55,7 +55,7 @@ TEST(DenseAlignment, FindsTheMotionInACorner) {
 
 TEST(DenseAlignment, AFaintTextureSaysWhereAlongTheWall) {
   AlignedScenery scenery;
-  scenery.renderer.vignetting = 0.35;   // ten times what the texture is
+  scenery.renderer.vignetting = 0.35;  // ten times what the texture is
   DenseAlignment found;
   const Rigid3 a = looking({1.8, 0.2, 1.4}, 0.0), b = looking({1.82, 0.25, 1.4}, 0.09, -0.02);
   const Vector6d error = scenery.error(a, b, change_of(0.015, 0.01, 0.01, 0.01, 0.01, -0.01), &found);
@@ -72,12 +72,12 @@ TEST(DenseAlignment, ABareWallLeavesThePrediction) {
   const Rigid3 a = looking({1.8, 0.2, 1.4}, 0.0), b = looking({1.82, 0.25, 1.4}, 0.05);
   const Vector6d error = scenery.error(a, b, change_of(0.015, 0.01, 0.01, 0.01, 0.01, -0.01), &found);
   ASSERT_TRUE(found.is_aligned);
-  EXPECT_LT(std::abs(error[2]), 0.003);                          // distance
-  EXPECT_LT(error.segment<2>(3).norm(), 0.002);                  // tilt
+  EXPECT_LT(std::abs(error[2]), 0.003);          // distance
+  EXPECT_LT(error.segment<2>(3).norm(), 0.002);  // tilt
   EXPECT_NEAR(error[0], 0.015, 0.01);
   EXPECT_NEAR(error[1], 0.010, 0.01);
   EXPECT_NEAR(error[5], -0.01, 0.01);
-  EXPECT_GT(std::sqrt(found.covariance(0, 0)), 0.008);           // sigma of the prediction: 0.02 m, 0.04 rad
+  EXPECT_GT(std::sqrt(found.covariance(0, 0)), 0.008);  // sigma of the prediction: 0.02 m, 0.04 rad
   EXPECT_LT(std::sqrt(found.covariance(2, 2)), 0.004);
   EXPECT_GT(std::sqrt(found.covariance(5, 5)), 0.015);
   EXPECT_LT(std::sqrt(found.covariance(4, 4)), 0.006);

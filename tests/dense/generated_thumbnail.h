@@ -17,11 +17,12 @@ namespace camloc::testing {
 
 class BoxRenderer {
  public:
-  double contrast = 0.08;          ///< of the texture: 1 is about +-60 grey levels
-  double vignetting = 0;           ///< share of the light that is missing in the corners
+  double contrast = 0.08;  ///< of the texture: 1 is about +-60 grey levels
+  double vignetting = 0;   ///< share of the light that is missing in the corners
   double grey_noise = 0.3, depth_noise_m = 0.001;
 
-  BoxRenderer(const RgbdCamera& camera, const Eigen::Vector3d& low, const Eigen::Vector3d& high) : camera_(camera), low_(low), high_(high) {}
+  BoxRenderer(const RgbdCamera& camera, const Eigen::Vector3d& low, const Eigen::Vector3d& high)
+      : camera_(camera), low_(low), high_(high) {}
 
   ViewThumbnail see(const Rigid3& T_world_camera) {
     ViewThumbnail view;
@@ -50,8 +51,10 @@ class BoxRenderer {
     const double grey = light * (120 + contrast * texture) + grey_noise * noise(rng_);
     const double depth = z + depth_noise_m * noise(rng_);
     const bool is_in_range = z >= camera_.min_depth_m && z <= camera_.max_depth_m;
-    view->grey.push_back(static_cast<std::uint16_t>(std::lround(std::clamp(grey, 0.0, 255.0) / static_cast<double>(ViewThumbnail::kGreyUnit))));
-    view->depth.push_back(is_in_range ? static_cast<std::uint16_t>(std::lround(depth / static_cast<double>(ViewThumbnail::kDepthUnitM))) : std::uint16_t{0});
+    view->grey.push_back(
+        static_cast<std::uint16_t>(std::lround(std::clamp(grey, 0.0, 255.0) / static_cast<double>(ViewThumbnail::kGreyUnit))));
+    view->depth.push_back(is_in_range ? static_cast<std::uint16_t>(std::lround(depth / static_cast<double>(ViewThumbnail::kDepthUnitM)))
+                                      : std::uint16_t{0});
   }
 
   static constexpr double kTextureUnitM = 0.02;

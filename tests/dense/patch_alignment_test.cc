@@ -20,7 +20,8 @@ namespace {
 using testing::Texture;
 
 /// The texture around `middle`, seen through A: what align_patch calls the target, its point `shift` off the middle.
-FeaturePatch draw(const Texture& texture, const Eigen::Matrix2d& A, const Eigen::Vector2d& shift, double contrast = 1, double brightness = 0) {
+FeaturePatch draw(const Texture& texture, const Eigen::Matrix2d& A, const Eigen::Vector2d& shift, double contrast = 1,
+                  double brightness = 0) {
   FeaturePatch patch;
   for (int dy = -FeaturePatch::kHalf; dy <= FeaturePatch::kHalf; ++dy) {
     for (int dx = -FeaturePatch::kHalf; dx <= FeaturePatch::kHalf; ++dx) {
@@ -50,7 +51,7 @@ TEST(PatchAlignment, FindsAFractionOfAPixel) {
     ++num_aligned;
     const double error_px = (found.shift_px - expected).norm();
     num_close += error_px < 0.08 ? 1 : 0;
-    EXPECT_LT(error_px, 0.25) << i;   // what is left is interpolation between pixels of a patch that is turned and scaled
+    EXPECT_LT(error_px, 0.25) << i;  // what is left is interpolation between pixels of a patch that is turned and scaled
     EXPECT_GT(found.correlation, 0.95) << i;
   }
   EXPECT_GT(num_aligned, 160);

@@ -37,12 +37,14 @@ struct Images {
   [[nodiscard]] Frame frame() const { return {0, 0, gray.view(), depth.view()}; }
 };
 
-double depth_m(const ViewThumbnail& view, int x, int y) { return view.depth[view.index(x, y)] * static_cast<double>(ViewThumbnail::kDepthUnitM); }
+double depth_m(const ViewThumbnail& view, int x, int y) {
+  return view.depth[view.index(x, y)] * static_cast<double>(ViewThumbnail::kDepthUnitM);
+}
 
 TEST(ViewThumbnail, AveragesGreyAndTakesTheNearerSurface) {
   Images images;
   for (int y = 0; y < 480; ++y) {
-    for (int x = 324; x < 328; ++x) images.depth.at(x, y) = 1000;                  // half of a cell
+    for (int x = 324; x < 328; ++x) images.depth.at(x, y) = 1000;  // half of a cell
     for (int x = 400; x < 416; ++x) images.depth.at(x, y) = 0;
   }
   const ViewThumbnail view = ThumbnailMaker(registered_camera()).make(images.frame());
@@ -96,7 +98,7 @@ TEST(ViewThumbnail, ProjectsDepthThatIsNotRegistered) {
   };
   EXPECT_NEAR(depth_m(view, column_of(350, 1.0), 30), 1.0, 1e-3);
   EXPECT_NEAR(depth_m(view, column_of(500, 2.0), 30), 2.0, 1e-3);
-  EXPECT_NEAR(depth_m(view, column_of(304, 1.0), 30), 1.0, 1e-3);   // hides what the depth camera saw behind
+  EXPECT_NEAR(depth_m(view, column_of(304, 1.0), 30), 1.0, 1e-3);  // hides what the depth camera saw behind
 }
 
 }  // namespace

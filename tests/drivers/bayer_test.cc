@@ -65,7 +65,8 @@ TEST(Bayer, GrayIsTheLumaOfTheInterpolation) {
       for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
           const double luma = (19 * interpolated(mosaic.view, order, x, y, 'R') + 38 * interpolated(mosaic.view, order, x, y, 'G') +
-                               7 * interpolated(mosaic.view, order, x, y, 'B')) / 64;
+                               7 * interpolated(mosaic.view, order, x, y, 'B')) /
+                              64;
           ASSERT_EQ(gray.at(x, y), std::floor(luma + 0.5)) << x << ' ' << y << " of " << width << 'x' << height;
         }
       }

@@ -31,7 +31,8 @@ struct Simulation {
   };
   Frame at(double since_start_ns) {
     const double delay_ns = static_cast<double>(kFloorNs) + std::exponential_distribution<double>(1 / mean_extra_delay_ns)(random);
-    return {host_zero_ns + static_cast<std::int64_t>(since_start_ns), device_zero_ns + static_cast<std::int64_t>(since_start_ns * (1 + drift_ppm * 1e-6)),
+    return {host_zero_ns + static_cast<std::int64_t>(since_start_ns),
+            device_zero_ns + static_cast<std::int64_t>(since_start_ns * (1 + drift_ppm * 1e-6)),
             host_zero_ns + static_cast<std::int64_t>(since_start_ns + delay_ns)};
   }
 };
@@ -72,9 +73,7 @@ TEST(DeviceClockTest, BusySecondDoesNotMoveCaptureTimes) {
     // The host sleeps for two seconds: what was taken meanwhile arrives together.
     if (i >= 300 && i < 360) frame.arrival_ns = simulation.host_zero_ns + static_cast<std::int64_t>(12 * kSecond) + i;
     const std::int64_t stamp_ns = clock.to_monotonic(frame.device_ns, frame.arrival_ns);
-    if (i > 60) {
-      EXPECT_LT(std::llabs(stamp_ns - frame.taken_ns - Simulation::kFloorNs), 2'000'000) << i;
-    }
+    if (i > 60) { EXPECT_LT(std::llabs(stamp_ns - frame.taken_ns - Simulation::kFloorNs), 2'000'000) << i; }
   }
 }
 
@@ -88,9 +87,7 @@ TEST(DeviceClockTest, StartsAnewWhenDeviceClockJumps) {
       const std::int64_t stamp_ns = clock.to_monotonic(frame.device_ns + (i < 300 ? 0 : jump_ns), frame.arrival_ns);
       EXPECT_GT(stamp_ns, before_ns);
       before_ns = stamp_ns;
-      if (i > 400) {
-        EXPECT_LT(std::llabs(stamp_ns - frame.taken_ns - Simulation::kFloorNs), 2'000'000) << i;
-      }
+      if (i > 400) { EXPECT_LT(std::llabs(stamp_ns - frame.taken_ns - Simulation::kFloorNs), 2'000'000) << i; }
     }
   }
 }

@@ -39,7 +39,10 @@ std::pair<std::uint32_t, std::uint32_t> honest_bytes(const FakeNode& node, std::
   const V4l2PixelFormat* format = find_v4l2_pixel_format(fourcc);
   if (format == nullptr || format->layout == PixelLayout::kJpeg) return {0, kJpegRoom};
   const auto stride = static_cast<std::uint32_t>(min_row_bytes(*format, width)) + node.padding_bytes;
-  const int rows = format->layout != PixelLayout::kNv12 ? height : format->num_planes == 1 ? height + (height + 1) / 2 : plane == 0 ? height : (height + 1) / 2;
+  const int rows = format->layout != PixelLayout::kNv12 ? height
+                   : format->num_planes == 1            ? height + (height + 1) / 2
+                   : plane == 0                         ? height
+                                                        : (height + 1) / 2;
   return {stride, stride * static_cast<std::uint32_t>(rows)};
 }
 
@@ -112,7 +115,8 @@ int FakeV4l2::list_size(State& state, v4l2_frmsizeenum* size) {
   if (format == nullptr || format->sizes.empty()) return -EINVAL;
   if (size->index >= format->sizes.size() && !state.node.faults.never_stops_listing) return -EINVAL;
   const FakeSize& s = format->sizes[size->index % format->sizes.size()];
-  const auto width = static_cast<std::uint32_t>(s.width), height = static_cast<std::uint32_t>(s.height), step = static_cast<std::uint32_t>(s.step);
+  const auto width = static_cast<std::uint32_t>(s.width), height = static_cast<std::uint32_t>(s.height),
+             step = static_cast<std::uint32_t>(s.step);
   size->type = s.step == 0 ? V4L2_FRMSIZE_TYPE_DISCRETE : V4L2_FRMSIZE_TYPE_STEPWISE;
   if (s.step == 0) {
     size->discrete = {width, height};
@@ -126,7 +130,9 @@ int FakeV4l2::list_rate(State& state, v4l2_frmivalenum* interval) {
   const FakeFormat* format = find_format(state.node, interval->pixel_format);
   if (format == nullptr) return -EINVAL;
   for (const FakeSize& size : format->sizes) {
-    const auto is_in = [&](std::uint32_t side, int low, int high) { return static_cast<int>(side) >= (size.step != 0 ? low : high) && static_cast<int>(side) <= high; };
+    const auto is_in = [&](std::uint32_t side, int low, int high) {
+      return static_cast<int>(side) >= (size.step != 0 ? low : high) && static_cast<int>(side) <= high;
+    };
     if (!is_in(interval->width, size.min_width, size.width) || !is_in(interval->height, size.min_height, size.height)) continue;
     if (size.rates_hz.empty()) return -EINVAL;
     if (interval->index >= size.rates_hz.size() && !state.node.faults.never_stops_listing) return -EINVAL;
@@ -182,7 +188,8 @@ int FakeV4l2::request_buffers(State& state, v4l2_requestbuffers* request) {
   const unsigned planes = is_multiplanar(state) ? num_planes(state.node.format.fmt.pix_mp.pixelformat) : 1;
   state.buffers.assign(request->count, {});
   for (Buffer& buffer : state.buffers) {
-    for (unsigned plane = 0; plane < planes; ++plane) buffer.planes.emplace_back(std::min(plane_size(state.node, is_multiplanar(state), plane), 1U << 24));
+    for (unsigned plane = 0; plane < planes; ++plane)
+      buffer.planes.emplace_back(std::min(plane_size(state.node, is_multiplanar(state), plane), 1U << 24));
     buffer.bytesused.resize(planes);
   }
   return 0;
@@ -205,7 +212,9 @@ int FakeV4l2::query_buffer(State& state, v4l2_buffer* buffer) {
 
 int FakeV4l2::queue_buffer(State& state, const v4l2_buffer& buffer) {
   const bool is_known = buffer.index < state.buffers.size();
-  const bool is_in = std::count(state.queued.begin(), state.queued.end(), buffer.index) + std::count(state.done.begin(), state.done.end(), buffer.index) > 0;
+  const bool is_in =
+      std::count(state.queued.begin(), state.queued.end(), buffer.index) + std::count(state.done.begin(), state.done.end(), buffer.index) >
+      0;
   if (!is_known || is_in) return -EINVAL;
   state.queued.push_back(buffer.index);
   return 0;

@@ -40,9 +40,9 @@ struct FakeControl {
 
 /// What goes wrong; may be changed while the node streams.
 struct FakeFaults {
-  bool is_gone = false;           ///< unplugged: ENODEV from now on
-  bool is_busy = false;           ///< another program has the format: EBUSY
-  bool is_stalled = false;        ///< exposes nothing any more
+  bool is_gone = false;     ///< unplugged: ENODEV from now on
+  bool is_busy = false;     ///< another program has the format: EBUSY
+  bool is_stalled = false;  ///< exposes nothing any more
   bool never_stops_listing = false;
   bool has_poll_error = false;    ///< POLLERR, but no frame and no error from the call that fetches one
   bool leaves_out_rates = false;  ///< VIDIOC_S_PARM is not implemented
@@ -64,7 +64,7 @@ struct FakeNode {
   std::uint32_t stamp_flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC | V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
   std::uint32_t padding_bytes = 0;  ///< at the end of every row
   std::uint32_t colorspace = V4L2_COLORSPACE_SRGB, quantization = V4L2_QUANTIZATION_DEFAULT;
-  std::int64_t phase_ns = 0;        ///< first exposure after the stream starts
+  std::int64_t phase_ns = 0;  ///< first exposure after the stream starts
   /// Fills a plane of exposure `number`; returns the bytes used. Without one the bytes are the number of the exposure.
   std::function<std::size_t(std::uint64_t number, unsigned plane, std::span<std::uint8_t> bytes)> paint;
   FakeFaults faults;

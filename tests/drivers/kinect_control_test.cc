@@ -243,10 +243,8 @@ TEST(KinectControl, CalibrationThatMakesNoSenseIsNotBelieved) {
   Bytes zero_plane(322);
   const float plane[4] = {7.5F, std::numeric_limits<float>::quiet_NaN(), 120.0F, 0.1042F};
   std::memcpy(&zero_plane[kZeroPlaneOffset], plane, sizeof(plane));
-  camera.bodies = {{0x16 << 16 | 0x40, Bytes(kRegistrationBodyBytes)},
-                   {0x16 << 16 | 0x41, Bytes(8)},
-                   {0x16 << 16, Bytes(4)},
-                   {0x04 << 16, zero_plane}};
+  camera.bodies = {
+      {0x16 << 16 | 0x40, Bytes(kRegistrationBodyBytes)}, {0x16 << 16 | 0x41, Bytes(8)}, {0x16 << 16, Bytes(4)}, {0x04 << 16, zero_plane}};
   const Result<KinectCalibration> result = control.read_calibration();
   ASSERT_TRUE(result.is_ok()) << result.status().message();
   const KinectCalibration& calibration = *result;

@@ -130,8 +130,7 @@ TEST(KinectRegistration, SurfacesShiftByBaselineTimesFocalLengthOverDistance) {
     EXPECT_EQ(std::count(registered.pixels.begin(), registered.pixels.end(), 0), static_cast<std::ptrdiff_t>(kNumPixels - 1));
     const double parallax_px = plane.color_distance_cm * 10 * plane.focal_px() / *hit;
     const double at_infinity_px = plane.color_distance_cm * 10 * plane.focal_px() / (10 * plane.reference_distance_cm);
-    EXPECT_NEAR(at % kWidth, 300 + 5 + 1 + at_infinity_px - parallax_px, 1.5)
-        << "nearer: further to the left in the colour image";
+    EXPECT_NEAR(at % kWidth, 300 + 5 + 1 + at_infinity_px - parallax_px, 1.5) << "nearer: further to the left in the colour image";
     EXPECT_EQ(at / kWidth, 200 - 3 + 1);
   }
 }
@@ -145,8 +144,7 @@ TEST(KinectRegistration, RealCoefficientsGiveASmoothMapOfTheWholeImage) {
   const std::vector<std::uint16_t> wall(kNumPixels, 900);
   Image<std::uint16_t> registered;
   registration->apply(wall, &registered);
-  const auto num_hit =
-      std::count_if(registered.pixels.begin(), registered.pixels.end(), [](std::uint16_t mm) { return mm != 0; });
+  const auto num_hit = std::count_if(registered.pixels.begin(), registered.pixels.end(), [](std::uint16_t mm) { return mm != 0; });
   EXPECT_GT(static_cast<double>(num_hit), 0.75 * kNumPixels)
       << "the colour camera sees wider: a frame stays empty, the inside has no holes";
   for (int y = 60; y < 420; ++y) {

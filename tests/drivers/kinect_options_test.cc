@@ -18,8 +18,7 @@ TEST(KinectOptions, DefaultsLeaveTheDeviceAlone) {
   ASSERT_TRUE(options.is_ok()) << options.status().message();
   EXPECT_TRUE(options->selector.empty());
   EXPECT_EQ(options->depth, DepthMode::kRegistered);
-  EXPECT_FALSE(options->color.auto_exposure || options->color.auto_white_balance || options->color.exposure_us ||
-               options->color.gain);
+  EXPECT_FALSE(options->color.auto_exposure || options->color.auto_white_balance || options->color.exposure_us || options->color.gain);
   EXPECT_TRUE(options->is_led_status);
   EXPECT_FALSE(options->tilt_deg);
 }

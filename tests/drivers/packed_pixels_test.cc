@@ -13,7 +13,8 @@ namespace {
 TEST(PackedPixels, UnpackWhatWasPackedBitByBit) {
   std::mt19937 random(3);
   for (const unsigned bits : {1U, 7U, 8U, 10U, 11U, 12U, 16U}) {
-    for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{7}, std::size_t{8}, std::size_t{9}, std::size_t{101}, std::size_t{640}}) {
+    for (const std::size_t count :
+         {std::size_t{0}, std::size_t{1}, std::size_t{7}, std::size_t{8}, std::size_t{9}, std::size_t{101}, std::size_t{640}}) {
       std::vector<std::uint16_t> pixels(count);
       std::vector<std::uint8_t> packed(packed_bytes(count, bits));
       for (std::size_t i = 0; i < count; ++i) {

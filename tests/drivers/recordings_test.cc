@@ -31,7 +31,8 @@ TEST_P(Recordings, IndexPosesAndFirstFrames) {
   EXPECT_EQ(sequence->layout, expected.layout);
   EXPECT_EQ(sequence->frames.size(), expected.num_frames);
   const auto has_depth = [](const SequenceFrame& frame) { return !frame.depth_path.empty(); };
-  EXPECT_GE(static_cast<std::size_t>(std::count_if(sequence->frames.begin(), sequence->frames.end(), has_depth)), expected.least_with_depth);
+  EXPECT_GE(static_cast<std::size_t>(std::count_if(sequence->frames.begin(), sequence->frames.end(), has_depth)),
+            expected.least_with_depth);
   const auto poses = read_embedded_poses(*sequence);
   ASSERT_EQ(poses.is_ok(), expected.least_with_pose > 0) << poses.status().message();
   if (poses) {
@@ -52,7 +53,7 @@ TEST_P(Recordings, IndexPosesAndFirstFrames) {
 
 INSTANTIATE_TEST_SUITE_P(All, Recordings,
                          ::testing::Values(Expected{"kitchen", "7scenes", 600, 600, 600}, Expected{"tum_fr1_rpy", "tum", 362, 350, 350},
-                                         Expected{"tum_fr1_xyz", "tum", 10, 10, 10}, Expected{"elsewhere", "7scenes", 13, 13, 0}),
+                                           Expected{"tum_fr1_xyz", "tum", 10, 10, 10}, Expected{"elsewhere", "7scenes", 13, 13, 0}),
                          [](const auto& one) { return std::string(one.param.folder); });
 
 }  // namespace

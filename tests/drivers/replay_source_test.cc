@@ -87,7 +87,8 @@ TEST(ReplaySource, BrokenFrameIsReportedAndPassed) {
   EXPECT_EQ(source->info().color_width, 16 * 2) << "the first readable image counts";
   std::filesystem::remove(folder / "frame-000004.color.jpg");
   FrameBuffer frame;
-  for (const char* part : {"frame-000000.color.jpg: the file is empty", "frame-000001.depth.png: neither", "16x12 pixels, the recording has 32x24"}) {
+  for (const char* part :
+       {"frame-000000.color.jpg: the file is empty", "frame-000001.depth.png: neither", "16x12 pixels, the recording has 32x24"}) {
     const Status status = source->next(&frame, milliseconds(0));
     EXPECT_EQ(status.code(), ErrorCode::kCorrupt);
     EXPECT_NE(status.message().find(part), std::string::npos) << status.message();
@@ -174,7 +175,10 @@ TEST(ReplaySource, BadUrls) {
   const TestFolder folder;
   write_7scenes(folder, 2);
   const std::string url = "replay://" + folder.path();
-  const struct { std::string url; const char* part; } cases[] = {
+  const struct {
+    std::string url;
+    const char* part;
+  } cases[] = {
       {url + "?sped=1", "knows speed, loop, frames, exclude, rate_hz"},
       {url + "?speed=-1", "speed=-1"},
       {url + "?loop=yes", "loop=yes"},

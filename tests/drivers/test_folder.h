@@ -68,7 +68,8 @@ inline ColorImage smooth_color(int width, int height, int seed = 0) {
 inline Image<std::uint16_t> ramp_depth(int width, int height, int seed = 0) {
   Image<std::uint16_t> image;
   image.resize(width, height);
-  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = static_cast<std::uint16_t>(i * 257 + static_cast<std::size_t>(seed));
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    image.pixels[i] = static_cast<std::uint16_t>(i * 257 + static_cast<std::size_t>(seed));
   return image;
 }
 

@@ -40,7 +40,8 @@ TEST(V4l2ControlName, IsThatOfV4l2Ctl) {
 }
 
 TEST_F(V4l2Controls, SwitchesAndMenusComeBeforeNumbers) {
-  ASSERT_TRUE(set({{"exposure_absolute", "100"}, {"exposure_auto", "manual_mode"}, {"brightness", "-5"}, {"white_balance_automatic", "off"}}));
+  ASSERT_TRUE(
+      set({{"exposure_absolute", "100"}, {"exposure_auto", "manual_mode"}, {"brightness", "-5"}, {"white_balance_automatic", "off"}}));
   const std::vector<std::pair<std::string, int>> expected{
       {"Exposure, Auto", 1}, {"White Balance, Automatic", 0}, {"Brightness", -5}, {"Exposure (Absolute)", 100}};
   EXPECT_EQ(node_.controls_set, expected);
@@ -49,14 +50,20 @@ TEST_F(V4l2Controls, SwitchesAndMenusComeBeforeNumbers) {
 TEST_F(V4l2Controls, UnknownOnesListWhatThereIs) {
   const Status status = set({{"brightness", "1"}, {"sharpness", "3"}});
   EXPECT_EQ(status.code(), ErrorCode::kInvalid);
-  EXPECT_EQ(status.message(), "/dev/video0: no control 'sharpness'; 'Fake Camera' has brightness, white_balance_automatic, exposure_auto, exposure_absolute");
+  EXPECT_EQ(status.message(),
+            "/dev/video0: no control 'sharpness'; 'Fake Camera' has brightness, white_balance_automatic, exposure_auto, exposure_absolute");
   EXPECT_TRUE(node_.controls_set.empty()) << "nothing is set when something is wrong";
   EXPECT_EQ(set({{"gone", "0"}}).code(), ErrorCode::kInvalid) << "disabled";
 }
 
 TEST_F(V4l2Controls, ValuesOutOfRange) {
-  for (const Values& values : {Values{{"brightness", "65"}}, {{"brightness", "1.5"}}, {{"brightness", ""}}, {{"exposure_auto", "4"}},
-                               {{"exposure_auto", "Shutter Priority"}}, {{"temperature", "3"}}, {{"white_balance_automatic", "2"}},
+  for (const Values& values : {Values{{"brightness", "65"}},
+                               {{"brightness", "1.5"}},
+                               {{"brightness", ""}},
+                               {{"exposure_auto", "4"}},
+                               {{"exposure_auto", "Shutter Priority"}},
+                               {{"temperature", "3"}},
+                               {{"white_balance_automatic", "2"}},
                                {{"brightness", "99999999999999999999"}}}) {
     const Status status = set(values);
     EXPECT_EQ(status.code(), ErrorCode::kInvalid) << values.begin()->second;

@@ -97,7 +97,8 @@ TEST(V4l2Conversion, GrayOfYuvIsItsLuma) {
 
 TEST(V4l2Conversion, ColorOfYuvFollowsItsEncoding) {
   for (const std::uint32_t fourcc : kYuvFormats) {
-    for (const YuvEncoding encoding : {YuvEncoding{false, false}, YuvEncoding{false, true}, YuvEncoding{true, false}, YuvEncoding{true, true}}) {
+    for (const YuvEncoding encoding :
+         {YuvEncoding{false, false}, YuvEncoding{false, true}, YuvEncoding{true, false}, YuvEncoding{true, true}}) {
       RawFrame frame = random_frame(fourcc, 33, 5, 3);
       frame.layout.encoding = encoding;
       Image<Bgr> color;
@@ -108,8 +109,10 @@ TEST(V4l2Conversion, ColorOfYuvFollowsItsEncoding) {
         for (int x = 0; x < 33; ++x) {
           const Yuv yuv = yuv_at(frame, x, y);
           const double luma = encoding.is_full_range ? yuv.y / 255.0 : (yuv.y - 16) / 219.0;
-          const double cb = (yuv.u - 128) / (encoding.is_full_range ? 255.0 : 224.0), cr = (yuv.v - 128) / (encoding.is_full_range ? 255.0 : 224.0);
-          const double red = luma + 2 * (1 - kr) * cr, blue = luma + 2 * (1 - kb) * cb, green = (luma - kr * red - kb * blue) / (1 - kr - kb);
+          const double cb = (yuv.u - 128) / (encoding.is_full_range ? 255.0 : 224.0),
+                       cr = (yuv.v - 128) / (encoding.is_full_range ? 255.0 : 224.0);
+          const double red = luma + 2 * (1 - kr) * cr, blue = luma + 2 * (1 - kb) * cb,
+                       green = (luma - kr * red - kb * blue) / (1 - kr - kb);
           const auto level = [](double value) { return std::clamp(255 * value, 0.0, 255.0); };
           EXPECT_NEAR(color.at(x, y).r, level(red), 0.52);
           EXPECT_NEAR(color.at(x, y).g, level(green), 0.52);
@@ -144,7 +147,8 @@ TEST(V4l2Conversion, GrayOfInfraredKeepsTheUpperBitsAndSaturates) {
       Image<std::uint8_t> gray;
       ASSERT_TRUE(convert_to_gray(frame.layout, frame.planes, bits, &gray));
       for (int y = 0; y < 2; ++y) {
-        for (int x = 0; x < 1025; ++x) ASSERT_EQ(gray.at(x, y), std::min(word_at(frame, x, y) >> (bits - 8), 255U)) << fourcc_name(format.fourcc);
+        for (int x = 0; x < 1025; ++x)
+          ASSERT_EQ(gray.at(x, y), std::min(word_at(frame, x, y) >> (bits - 8), 255U)) << fourcc_name(format.fourcc);
       }
     }
   }
@@ -156,8 +160,10 @@ TEST(V4l2Conversion, GrayBytesAndBayer) {
   ASSERT_TRUE(convert_to_gray(bytes.layout, bytes.planes, 8, &gray));
   for (int y = 0; y < 4; ++y) EXPECT_TRUE(std::equal(gray.row(y), gray.row(y) + 33, bytes.bytes[0].data() + y * 40));
 
-  for (const auto& [fourcc, order] : {std::pair{V4L2_PIX_FMT_SRGGB8, BayerOrder::kRggb}, {V4L2_PIX_FMT_SGRBG8, BayerOrder::kGrbg},
-                                      {V4L2_PIX_FMT_SGBRG8, BayerOrder::kGbrg}, {V4L2_PIX_FMT_SBGGR8, BayerOrder::kBggr}}) {
+  for (const auto& [fourcc, order] : {std::pair{V4L2_PIX_FMT_SRGGB8, BayerOrder::kRggb},
+                                      {V4L2_PIX_FMT_SGRBG8, BayerOrder::kGrbg},
+                                      {V4L2_PIX_FMT_SGBRG8, BayerOrder::kGbrg},
+                                      {V4L2_PIX_FMT_SBGGR8, BayerOrder::kBggr}}) {
     const RawFrame mosaic = random_frame(fourcc, 33, 4, 7);
     const ImageView<std::uint8_t> view{mosaic.bytes[0].data(), 33, 4, 40};
     Image<std::uint8_t> expected_gray, scratch;

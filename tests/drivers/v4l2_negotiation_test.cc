@@ -108,7 +108,8 @@ TEST_F(V4l2Negotiation, DriversThatListNeitherSizesNorRates) {
 
 TEST_F(V4l2Negotiation, WithoutRatesFewerBytesAreFaster) {
   node_.faults.leaves_out_rates = true;
-  node_.formats = {{V4L2_PIX_FMT_Y10BPACK, {{640, 488, {}}}}, {V4L2_PIX_FMT_SGRBG8, {{640, 480, {}}}}, {V4L2_PIX_FMT_UYVY, {{640, 480, {}}}}};
+  node_.formats = {
+      {V4L2_PIX_FMT_Y10BPACK, {{640, 488, {}}}}, {V4L2_PIX_FMT_SGRBG8, {{640, 480, {}}}}, {V4L2_PIX_FMT_UYVY, {{640, 480, {}}}}};
   EXPECT_EQ(agreed({}), "GRBG 640x480 0") << "as the kernel's driver of the Kinect lists them";
 }
 
@@ -128,7 +129,8 @@ TEST_F(V4l2Negotiation, SaysWhatIsOffered) {
 }
 
 TEST_F(V4l2Negotiation, FormatsOfTheSameSizesAreOneEntry) {
-  node_.formats = {{V4L2_PIX_FMT_YUYV, {{640, 480, {30}}}}, {V4L2_PIX_FMT_MJPEG, {{640, 480, {60}}}}, {V4L2_PIX_FMT_UYVY, {{640, 480, {30}}}}};
+  node_.formats = {
+      {V4L2_PIX_FMT_YUYV, {{640, 480, {30}}}}, {V4L2_PIX_FMT_MJPEG, {{640, 480, {60}}}}, {V4L2_PIX_FMT_UYVY, {{640, 480, {30}}}}};
   const std::string refused = refusal(sized(800, 600)).message();
   EXPECT_TRUE(refused.ends_with("it offers YUYV, UYVY 640x480 (30 Hz); MJPG 640x480 (60 Hz)")) << refused;
 }

@@ -77,7 +77,8 @@ TEST_F(V4l2Source, PairsOfOneExposure) {
   EXPECT_EQ(source_->info().color_width, 160);
   EXPECT_EQ(source_->info().depth_height, 120) << "depth is wished to be of the image's size";
   EXPECT_EQ(source_->info().stamp_clock, StampClock::kMonotonic);
-  EXPECT_EQ(source_->info().description, "/dev/video0 'Colour' YUYV 160x120 at 30 Hz, depth /dev/video2 'Depth' Z16 160x120 at 30 Hz; stamps of the start of exposure");
+  EXPECT_EQ(source_->info().description,
+            "/dev/video0 'Colour' YUYV 160x120 at 30 Hz, depth /dev/video2 'Depth' Z16 160x120 at 30 Hz; stamps of the start of exposure");
   const std::int64_t start_ns = io_->monotonic_ns();
   for (std::uint64_t i = 0; i < 100; ++i) {
     ASSERT_EQ(next(), ErrorCode::kOk) << problem_;
@@ -168,7 +169,8 @@ TEST_F(V4l2Source, Y16AsDepth) {
 TEST_F(V4l2Source, ColorOnRequest) {
   ASSERT_TRUE(open("v4l2:///dev/video0?width=160&height=120", {.wants_color = true}));
   color_.paint = [](std::uint64_t, unsigned, std::span<std::uint8_t> bytes) {
-    for (std::size_t i = 0; i + 3 < bytes.size(); i += 4) bytes[i] = bytes[i + 2] = 81, bytes[i + 1] = 90, bytes[i + 3] = 240;  // red, BT.601
+    for (std::size_t i = 0; i + 3 < bytes.size(); i += 4)
+      bytes[i] = bytes[i + 2] = 81, bytes[i + 1] = 90, bytes[i + 3] = 240;  // red, BT.601
     return bytes.size();
   };
   ASSERT_EQ(next(), ErrorCode::kOk);
@@ -182,7 +184,8 @@ TEST_F(V4l2Source, PaddedRowsAndMultiplanarNodes) {
   color_.capabilities = V4L2_CAP_VIDEO_CAPTURE_MPLANE | V4L2_CAP_STREAMING;
   color_.formats = {{V4L2_PIX_FMT_NV12M, {{64, 48, {30}}}}};
   color_.paint = [](std::uint64_t, unsigned plane, std::span<std::uint8_t> bytes) {
-    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = plane == 1 ? 128 : i % 96 < 64 ? static_cast<std::uint8_t>(100 + i / 96) : 255;
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+      bytes[i] = plane == 1 ? 128 : i % 96 < 64 ? static_cast<std::uint8_t>(100 + i / 96) : 255;
     return bytes.size();
   };
   ASSERT_TRUE(open("v4l2:///dev/video0", {.wants_color = true}));
@@ -216,7 +219,8 @@ TEST_F(V4l2Source, StampsByTheirClock) {
 TEST_F(V4l2Source, StampsThatCannotBeTrueAreNotBelieved) {
   ASSERT_TRUE(open("v4l2:///dev/video0?width=160&height=120"));
   std::int64_t last_ns = 0;
-  for (const timeval stamp : {timeval{0, 0}, {1'700'000'000, 5}, {-1, 0}, {50, 9'999'999}, {50, -5}, {9'000'000'000'000'000'000, 0}, {1, 1}}) {
+  for (const timeval stamp :
+       {timeval{0, 0}, {1'700'000'000, 5}, {-1, 0}, {50, 9'999'999}, {50, -5}, {9'000'000'000'000'000'000, 0}, {1, 1}}) {
     color_.faults.stamp = stamp;
     ASSERT_EQ(next(), ErrorCode::kOk);
     EXPECT_NEAR(static_cast<double>(frame_.stamp_ns), static_cast<double>(io_->monotonic_ns()) - 1e9 / 30, 1);
@@ -240,15 +244,15 @@ TEST_F(V4l2Source, DamagedFramesAreCorruptAndCounted) {
   const auto expect_one_broken = [&](FakeNode& node) {
     // Those already exposed are still fine; then the broken ones come, and then fine ones again.
     int num_turns = 0;
-    while (next() == ErrorCode::kOk && ++num_turns < 10) {
-    }
+    while (next() == ErrorCode::kOk && ++num_turns < 10) {}
     EXPECT_EQ(next(), ErrorCode::kCorrupt);
-    const std::string what = node.faults.bytesused ? "a frame of " + std::to_string(*node.faults.bytesused) + " bytes where there should be 38400" : "marked a frame";
+    const std::string what = node.faults.bytesused
+                                 ? "a frame of " + std::to_string(*node.faults.bytesused) + " bytes where there should be 38400"
+                                 : "marked a frame";
     EXPECT_NE(problem_.find(what), std::string::npos) << problem_;
     node.faults.bytesused.reset();
     node.faults.buffer_flags = 0;
-    while (source_->health().frames_incomplete == num_broken || next() == ErrorCode::kCorrupt) {
-    }
+    while (source_->health().frames_incomplete == num_broken || next() == ErrorCode::kCorrupt) {}
     ASSERT_EQ(next(), ErrorCode::kOk);
     EXPECT_EQ(frame_.gray.at(0, 0) + 1000, frame_.depth.at(0, 0)) << "pairs again";
     EXPECT_GT(source_->health().frames_incomplete, num_broken);
@@ -286,8 +290,7 @@ TEST_F(V4l2Source, AStallIsATimeoutAndARestartMendsIt) {
   ASSERT_TRUE(open("v4l2:///dev/video0?depth=/dev/video2&width=160&height=120&rate_hz=30"));
   ASSERT_EQ(next(), ErrorCode::kOk);
   depth_.faults.is_stalled = true;
-  while (next(100) == ErrorCode::kOk) {
-  }
+  while (next(100) == ErrorCode::kOk) {}
   const std::int64_t before_ns = io_->monotonic_ns();
   EXPECT_EQ(next(100), ErrorCode::kTimeout) << problem_;
   EXPECT_NEAR(static_cast<double>(io_->monotonic_ns() - before_ns), 100e6, 2e6);
@@ -394,7 +397,8 @@ TEST_F(V4l2Source, ControlsFromTheUrl) {
 
 TEST_F(V4l2Source, CameraFileAndDepthUnit) {
   EXPECT_EQ(open("v4l2:///dev/video0?depth_unit_m=0.0001").code(), ErrorCode::kInvalid);
-  const std::string camera = folder_.write("camera.toml", "[color]\nwidth = 640\nheight = 480\nfx = 525.0\nfy = 525.0\ncx = 319.5\ncy = 239.5\n");
+  const std::string camera =
+      folder_.write("camera.toml", "[color]\nwidth = 640\nheight = 480\nfx = 525.0\nfy = 525.0\ncx = 319.5\ncy = 239.5\n");
   ASSERT_TRUE(open("v4l2:///dev/video0?depth=/dev/video2&depth_unit_m=0.0001&camera=" + camera));
   ASSERT_TRUE(source_->info().camera);
   EXPECT_EQ(source_->info().camera->depth_unit_m, 0.0001);
@@ -403,8 +407,9 @@ TEST_F(V4l2Source, CameraFileAndDepthUnit) {
 }
 
 TEST_F(V4l2Source, BadUrls) {
-  for (const char* url : {"v4l2://", "v4l2:///dev/video0?width=0", "v4l2:///dev/video0?width=1.5", "v4l2:///dev/video0?rate_hz=x", "v4l2:///dev/video0?format=H264",
-                          "v4l2:///dev/video0?speed=1", "v4l2:///dev/video0?gray_bits=7", "v4l2:///dev/video0?depth=/dev/video0", "v4l2:///dev/video0?stamp_offset_ms=1e9"}) {
+  for (const char* url : {"v4l2://", "v4l2:///dev/video0?width=0", "v4l2:///dev/video0?width=1.5", "v4l2:///dev/video0?rate_hz=x",
+                          "v4l2:///dev/video0?format=H264", "v4l2:///dev/video0?speed=1", "v4l2:///dev/video0?gray_bits=7",
+                          "v4l2:///dev/video0?depth=/dev/video0", "v4l2:///dev/video0?stamp_offset_ms=1e9"}) {
     const Status status = open(url);
     EXPECT_EQ(status.code(), ErrorCode::kInvalid) << url << ": " << status.message();
     EXPECT_EQ(status.message().find('\n'), std::string::npos);

@@ -91,7 +91,8 @@ void ControlServer::run_due_commands() {
     const TimedCommand command = std::move(schedule_.front());
     schedule_.erase(schedule_.begin());
     const std::string answer = handler_(command.line);
-    if (answer.starts_with("error")) std::fprintf(stderr, "fake-kinect: at %.3f s, '%s': %s\n", command.at_s, command.line.c_str(), answer.c_str());
+    if (answer.starts_with("error"))
+      std::fprintf(stderr, "fake-kinect: at %.3f s, '%s': %s\n", command.at_s, command.line.c_str(), answer.c_str());
   }
 }
 

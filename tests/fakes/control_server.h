@@ -28,7 +28,8 @@ class ControlServer {
  public:
   using Handler = std::function<std::string(const std::string& line)>;
   /// `handler` is called from a thread of the server. Without a path only the schedule is run; errors of its commands go to stderr.
-  [[nodiscard]] static Result<std::unique_ptr<ControlServer>> start(const std::string& path, std::vector<TimedCommand> schedule, Handler handler);
+  [[nodiscard]] static Result<std::unique_ptr<ControlServer>> start(const std::string& path, std::vector<TimedCommand> schedule,
+                                                                    Handler handler);
   ~ControlServer();
   ControlServer(const ControlServer&) = delete;
   ControlServer& operator=(const ControlServer&) = delete;

@@ -121,8 +121,10 @@ int main(int argc, char** argv) {
   server.id = device == "motor" ? UsbDeviceId::kMotor : UsbDeviceId::kCamera;
   server.is_plugged = !is_unplugged;
   (*rig)->set_monotonic_offset(server.origin_ns);
-  (*rig)->set_extra_counts([&] { return "\"usbredir\": {\"overflowed\": " + std::to_string(server.device ? server.device->num_overflowed() : 0) + "}"; });
-  auto control = ControlServer::start(arguments.control_socket, arguments.schedule, [&](const std::string& line) { return server.command(line); });
+  (*rig)->set_extra_counts(
+      [&] { return "\"usbredir\": {\"overflowed\": " + std::to_string(server.device ? server.device->num_overflowed() : 0) + "}"; });
+  auto control =
+      ControlServer::start(arguments.control_socket, arguments.schedule, [&](const std::string& line) { return server.command(line); });
   if (!control) return fail(control.status(), kFailed);
   while (is_ending == 0) {
     if (!server.serve_once(listener->get()) && is_once) break;

@@ -21,12 +21,12 @@ inline constexpr int kKinectHeight = 480;
 inline constexpr std::uint16_t kNoDisparity = 2047;  ///< the raw value of a pixel without depth
 
 struct KinectCalibration {
-  float emitter_cm = 7.5F;         ///< infrared camera to projector
-  float color_cm = 2.3F;           ///< infrared camera to colour camera, along x
+  float emitter_cm = 7.5F;  ///< infrared camera to projector
+  float color_cm = 2.3F;    ///< infrared camera to colour camera, along x
   float reference_cm = 120.0F;
   float pixel_cm = 0.1042F;
   std::uint16_t const_shift = 200;
-  double depth_focal_px = 585;     ///< of 640x480; centre (320, 240) in both cameras
+  double depth_focal_px = 585;  ///< of 640x480; centre (320, 240) in both cameras
   double color_focal_px = 525;
 
   /// One camera sees both: depth that was registered to colour before it came here.

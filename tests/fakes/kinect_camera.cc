@@ -74,7 +74,8 @@ void KinectCamera::reset(std::int64_t /*now_ns*/) {
 
 std::uint32_t KinectCamera::ticks_at(std::int64_t now_ns) const {
   const double ticks = static_cast<double>(now_ns) * (kClockHz / kSecond) * (1 + options_.clock_ppm * 1e-6);
-  return static_cast<std::uint32_t>(options_.clock_start + static_cast<std::uint64_t>(static_cast<std::int64_t>(ticks) + clock_jump_ticks_));
+  return static_cast<std::uint32_t>(options_.clock_start +
+                                    static_cast<std::uint64_t>(static_cast<std::int64_t>(ticks) + clock_jump_ticks_));
 }
 
 std::uint16_t KinectCamera::register_value(std::uint16_t address) const {
@@ -236,9 +237,18 @@ void KinectCamera::next_packet(StreamId id, std::int64_t now_ns, IsoPacket* pack
   const int kind = (id == StreamId::kVideo ? 0x80 : 0x70) + (packet->is_first ? 1 : packet->is_last ? 5 : 2);
   const std::uint32_t stamp = packet->is_first ? 0 : stream.stamp_ticks;
   const auto byte = [](std::size_t value) { return static_cast<std::uint8_t>(value); };
-  const std::array<std::uint8_t, kPacketHeaderBytes> header = {
-      'R', 'B', 0, byte(static_cast<std::size_t>(kind)), 0, stream.sequence, byte(packet->size >> 8), byte(packet->size),
-      byte(stamp), byte(stamp >> 8), byte(stamp >> 16), byte(stamp >> 24)};
+  const std::array<std::uint8_t, kPacketHeaderBytes> header = {'R',
+                                                               'B',
+                                                               0,
+                                                               byte(static_cast<std::size_t>(kind)),
+                                                               0,
+                                                               stream.sequence,
+                                                               byte(packet->size >> 8),
+                                                               byte(packet->size),
+                                                               byte(stamp),
+                                                               byte(stamp >> 8),
+                                                               byte(stamp >> 16),
+                                                               byte(stamp >> 24)};
   std::copy(header.begin(), header.end(), packet->bytes.begin());
   std::memcpy(packet->bytes.data() + kPacketHeaderBytes, frame.data() + stream.offset, payload);
   ++stream.sequence;

@@ -10,8 +10,8 @@ namespace camloc::fakes {
 namespace {
 
 constexpr std::array<const char*, kNumFaults> kFaultNames = {
-    "loss",       "bus_error",  "duplicate",     "reorder",    "short",    "sequence_jump", "bad_magic",   "bad_kind",
-    "bad_size",   "clock_jump", "control_stall", "late_reply", "no_reply", "wrong_tag",     "wrong_magic", "short_reply"};
+    "loss",     "bus_error",  "duplicate",     "reorder",    "short",    "sequence_jump", "bad_magic",   "bad_kind",
+    "bad_size", "clock_jump", "control_stall", "late_reply", "no_reply", "wrong_tag",     "wrong_magic", "short_reply"};
 constexpr std::int64_t kLateNs = 50'000'000;
 constexpr std::int64_t kNeverNs = std::int64_t{1} << 60;
 
@@ -29,13 +29,15 @@ Result<Fault> parse_fault(std::string_view name) {
 
 Status FaultInjector::configure(std::string_view spec) {
   const std::size_t at = spec.find_first_of("=:");
-  if (at == std::string_view::npos) return {ErrorCode::kInvalid, "fault " + in_quotes(spec) + " is neither KIND=PROBABILITY nor KIND:TIMES"};
+  if (at == std::string_view::npos)
+    return {ErrorCode::kInvalid, "fault " + in_quotes(spec) + " is neither KIND=PROBABILITY nor KIND:TIMES"};
   const auto fault = parse_fault(spec.substr(0, at));
   if (!fault) return fault.status();
   const std::string_view text = spec.substr(at + 1);
   if (spec[at] == '=') {
     const auto probability = parse_double(text);
-    if (!probability || !(*probability >= 0 && *probability <= 1)) return {ErrorCode::kInvalid, "not a probability in [0, 1]: " + in_quotes(text)};
+    if (!probability || !(*probability >= 0 && *probability <= 1))
+      return {ErrorCode::kInvalid, "not a probability in [0, 1]: " + in_quotes(text)};
     set_probability(*fault, *probability);
     return {};
   }
@@ -88,7 +90,8 @@ bool FaultInjector::damage_packet(StreamId stream, KinectCamera* camera, IsoPack
     is_damaged = true;
   }
   if (strikes(Fault::kClockJump))
-    camera->jump_clock(static_cast<std::int64_t>(random_below(2 * static_cast<std::size_t>(kClockHz))) - static_cast<std::int64_t>(kClockHz));
+    camera->jump_clock(static_cast<std::int64_t>(random_below(2 * static_cast<std::size_t>(kClockHz))) -
+                       static_cast<std::int64_t>(kClockHz));
   return is_damaged;
 }
 
@@ -139,7 +142,8 @@ Result<BadDescriptors> parse_bad_descriptors(std::string_view name) {
   constexpr std::array<std::string_view, 6> kNames = {"none", "no-endpoints", "truncated", "bulk-endpoints", "small-packets", "empty"};
   const auto found = std::find(kNames.begin(), kNames.end(), name);
   if (found != kNames.end()) return static_cast<BadDescriptors>(found - kNames.begin());
-  return {ErrorCode::kInvalid, "descriptors " + in_quotes(name) + ": not one of none no-endpoints truncated bulk-endpoints small-packets empty"};
+  return {ErrorCode::kInvalid,
+          "descriptors " + in_quotes(name) + ": not one of none no-endpoints truncated bulk-endpoints small-packets empty"};
 }
 
 void spoil(BadDescriptors kind, UsbDescriptors* descriptors) {

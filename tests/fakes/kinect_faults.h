@@ -17,22 +17,22 @@
 namespace camloc::fakes {
 
 enum class Fault {
-  kLoss,           ///< the packet does not arrive, its microframe is empty
-  kBusError,       ///< the same, and the host controller reports a CRC error (EILSEQ)
-  kDuplicate,      ///< the packet arrives twice
-  kReorder,        ///< the packet arrives after the next one
-  kShort,          ///< the packet is cut somewhere
-  kSequenceJump,   ///< sequence numbers from here on are up to 200 too high
-  kBadMagic,       ///< a header that does not begin with "RB"
-  kBadKind,        ///< a header with an unknown kind of packet
-  kBadSize,        ///< a header that gives another size
-  kClockJump,      ///< the device's clock jumps by up to a second
-  kControlStall,   ///< a vendor request is refused
-  kLateReply,      ///< a reply takes 50 ms longer
-  kNoReply,        ///< a command is never answered
-  kWrongTag,       ///< a reply to another command
-  kWrongMagic,     ///< a reply that does not begin with "RB"
-  kShortReply,     ///< a reply that is cut somewhere
+  kLoss,          ///< the packet does not arrive, its microframe is empty
+  kBusError,      ///< the same, and the host controller reports a CRC error (EILSEQ)
+  kDuplicate,     ///< the packet arrives twice
+  kReorder,       ///< the packet arrives after the next one
+  kShort,         ///< the packet is cut somewhere
+  kSequenceJump,  ///< sequence numbers from here on are up to 200 too high
+  kBadMagic,      ///< a header that does not begin with "RB"
+  kBadKind,       ///< a header with an unknown kind of packet
+  kBadSize,       ///< a header that gives another size
+  kClockJump,     ///< the device's clock jumps by up to a second
+  kControlStall,  ///< a vendor request is refused
+  kLateReply,     ///< a reply takes 50 ms longer
+  kNoReply,       ///< a command is never answered
+  kWrongTag,      ///< a reply to another command
+  kWrongMagic,    ///< a reply that does not begin with "RB"
+  kShortReply,    ///< a reply that is cut somewhere
   kNumFaults
 };
 inline constexpr std::size_t kNumFaults = static_cast<std::size_t>(Fault::kNumFaults);

@@ -135,7 +135,8 @@ TEST(FaultInjector, SpoilsReplies) {
 
 TEST(FaultInjector, RefusesWhatItDoesNotKnow) {
   FaultInjector faults(1);
-  for (const char* const spec : {"", "loss", "los=0.1", "loss=2", "loss=x", "loss:-1", "loss:x", "loss=nan"}) EXPECT_FALSE(faults.configure(spec)) << spec;
+  for (const char* const spec : {"", "loss", "los=0.1", "loss=2", "loss=x", "loss:-1", "loss:x", "loss=nan"})
+    EXPECT_FALSE(faults.configure(spec)) << spec;
 }
 
 TEST(BadDescriptors, AllDiffer) {

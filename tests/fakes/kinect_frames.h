@@ -45,11 +45,11 @@ class PatternShow final : public FrameShow {
 enum class AtEnd { kLoop, kHold };
 
 struct ReplayOptions {
-  std::string folder;           ///< TUM RGB-D or 7-Scenes, 640x480
-  std::string frames;           ///< Python slices of it, comma-separated; empty: all
-  double depth_unit_mm = 1;     ///< of the depth images: 1 for 7-Scenes, 0.2 for TUM RGB-D
+  std::string folder;        ///< TUM RGB-D or 7-Scenes, 640x480
+  std::string frames;        ///< Python slices of it, comma-separated; empty: all
+  double depth_unit_mm = 1;  ///< of the depth images: 1 for 7-Scenes, 0.2 for TUM RGB-D
   AtEnd at_end = AtEnd::kLoop;
-  std::string cache_file;       ///< rendered frames are kept here for the next run; empty: in memory
+  std::string cache_file;  ///< rendered frames are kept here for the next run; empty: in memory
 };
 
 class ReplayShow final : public FrameShow {

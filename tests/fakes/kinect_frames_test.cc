@@ -54,14 +54,16 @@ TEST(Disparity, GoesToMillimetresAndBack) {
 TEST(Disparity, IsNearThePublishedFit) {
   // 1 / z = 3.3309 - 0.0030711 raw, z in metres (OpenKinect wiki, "Imaging Information"), fitted to one device; they differ.
   const KinectCalibration calibration;
-  for (const int raw : {500, 700, 900, 1000}) EXPECT_NEAR(disparity_to_mm(calibration, raw) * (3.3309 - 0.0030711 * raw) / 1000, 1, 0.06) << raw;
+  for (const int raw : {500, 700, 900, 1000})
+    EXPECT_NEAR(disparity_to_mm(calibration, raw) * (3.3309 - 0.0030711 * raw) / 1000, 1, 0.06) << raw;
 }
 
 TEST(Disparity, RoundTripLosesAsMuchAsTheHeaderSays) {
   const KinectCalibration calibration;
   const auto worst_near = [&](int mm) {
     double worst = 0;
-    for (int z = mm - 50; z <= mm + 50; ++z) worst = std::max(worst, std::abs(disparity_to_mm(calibration, mm_to_disparity(calibration, z)) - z));
+    for (int z = mm - 50; z <= mm + 50; ++z)
+      worst = std::max(worst, std::abs(disparity_to_mm(calibration, mm_to_disparity(calibration, z)) - z));
     return worst;
   };
   EXPECT_LT(worst_near(1000), 1.6);

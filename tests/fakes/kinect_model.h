@@ -64,7 +64,7 @@ struct KinectOptions {
 /// One isochronous packet on its way.
 struct IsoPacket {
   std::array<std::uint8_t, kMaxPacketBytes> bytes;
-  std::size_t size = 0;              ///< 0: the device had nothing to send in this microframe
+  std::size_t size = 0;  ///< 0: the device had nothing to send in this microframe
   bool is_first = false, is_last = false;
   std::uint64_t show_index = 0;
   std::uint32_t stamp_ticks = 0;
@@ -103,8 +103,8 @@ class KinectCamera final : public UsbFunction {
     bool in_frame = false;
     FrameFormat format = FrameFormat::kBayer;
     std::uint8_t sequence = 0;
-    std::size_t offset = 0;             ///< of the next byte of the frame
-    std::int64_t next_exposure = 0;     ///< number of frame periods since power-up
+    std::size_t offset = 0;          ///< of the next byte of the frame
+    std::int64_t next_exposure = 0;  ///< number of frame periods since power-up
     std::uint32_t stamp_ticks = 0;
     std::uint64_t show_index = 0;
   };
@@ -131,7 +131,7 @@ class KinectCamera final : public UsbFunction {
   std::vector<std::uint8_t> reply_;
   std::int64_t reply_ready_ns_ = 0;
   std::int64_t clock_jump_ticks_ = 0;
-  std::int64_t show_start_ns_ = -1;     ///< exposure that shows frame 0
+  std::int64_t show_start_ns_ = -1;  ///< exposure that shows frame 0
   ReplyFilter reply_filter_;
   std::uint64_t num_commands_ = 0;
   std::uint64_t num_bad_commands_ = 0;

@@ -91,7 +91,8 @@ TEST_F(KinectModelTest, SensorRegistersAreWritable) {
 TEST_F(KinectModelTest, DescriptorsAreCutToWhatIsAskedFor) {
   EXPECT_EQ(camera_.control({0x80, 6, 0x0100, 0, 64}, {}, 0).data.size(), 18U);
   EXPECT_EQ(camera_.control({0x80, 6, 0x0200, 0, 9}, {}, 0).data.size(), 9U);
-  EXPECT_EQ(camera_.control({0x80, 6, 0x0303, 0x0409, 255}, {}, 0).data, std::vector<std::uint8_t>({14, 3, 's', 0, 'e', 0, 'r', 0, 'i', 0, 'a', 0, 'l', 0}));
+  EXPECT_EQ(camera_.control({0x80, 6, 0x0303, 0x0409, 255}, {}, 0).data,
+            std::vector<std::uint8_t>({14, 3, 's', 0, 'e', 0, 'r', 0, 'i', 0, 'a', 0, 'l', 0}));
   EXPECT_TRUE(camera_.control({0x80, 6, 0x0304, 0x0409, 255}, {}, 0).is_stalled);
 }
 

@@ -63,7 +63,8 @@ Result<UniqueFd> rendered_file(const Sequence& sequence, const std::vector<std::
   if (has_cache) {
     UniqueFd cached(::open(options.cache_file.c_str(), O_RDONLY | O_CLOEXEC));
     struct stat info {};
-    if (cached.is_open() && ::fstat(cached.get(), &info) == 0 && info.st_size == static_cast<off_t>(chosen.size() * kPairBytes)) return cached;
+    if (cached.is_open() && ::fstat(cached.get(), &info) == 0 && info.st_size == static_cast<off_t>(chosen.size() * kPairBytes))
+      return cached;
   }
   const std::string partial = options.cache_file + ".part" + std::to_string(::getpid());
   UniqueFd file(has_cache ? ::open(partial.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600) : ::memfd_create("frames", MFD_CLOEXEC));

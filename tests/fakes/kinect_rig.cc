@@ -113,9 +113,10 @@ Status KinectRig::stall(std::string_view which, std::string_view how_long, std::
   const auto milliseconds = parse_double(how_long);
   if (how_long != "forever" && (!milliseconds || !(*milliseconds >= 0 && *milliseconds < 1e9)))
     return {ErrorCode::kInvalid, "not milliseconds or 'forever': " + in_quotes(how_long)};
-  if (which != "video" && which != "depth" && which != "both") return {ErrorCode::kInvalid, "not video, depth or both: " + in_quotes(which)};
+  if (which != "video" && which != "depth" && which != "both")
+    return {ErrorCode::kInvalid, "not video, depth or both: " + in_quotes(which)};
   const std::int64_t until_ns = milliseconds && how_long != "forever" ? now_ns + static_cast<std::int64_t>(*milliseconds * 1e6)
-                                                                       : std::numeric_limits<std::int64_t>::max();
+                                                                      : std::numeric_limits<std::int64_t>::max();
   for (const StreamId stream : kBothStreams)
     if (which == "both" || which == name_of(stream)) streams_[index_of(stream)].stalled_until_ns = until_ns;
   return {};
@@ -133,14 +134,14 @@ std::string KinectRig::command(std::string_view line, std::int64_t now_ns) {
 }
 
 std::string KinectRig::counts(std::int64_t now_ns) const {
-  std::string text = "{" + member("bus_ms", static_cast<std::uint64_t>(now_ns / 1'000'000)) + ", " + member("power_cycles", num_power_cycles_) + ", " +
-                     member("commands", camera_->num_commands()) + ", " + member("bad_commands", camera_->num_bad_commands()) + ", " +
-                     member("led", static_cast<std::uint64_t>(motor_->led()));
+  std::string text = "{" + member("bus_ms", static_cast<std::uint64_t>(now_ns / 1'000'000)) + ", " +
+                     member("power_cycles", num_power_cycles_) + ", " + member("commands", camera_->num_commands()) + ", " +
+                     member("bad_commands", camera_->num_bad_commands()) + ", " + member("led", static_cast<std::uint64_t>(motor_->led()));
   for (const StreamId stream : kBothStreams) {
     const StreamState& state = streams_[index_of(stream)];
-    text += std::string(", \"") + name_of(stream) + "\": {" + member("frames", state.num_frames) + ", " + member("damaged", state.num_damaged) +
-            ", " + member("packets", state.num_packets) + ", " + member("unwanted", state.num_unwanted) + ", " +
-            member("stalled", state.num_stalled) + "}";
+    text += std::string(", \"") + name_of(stream) + "\": {" + member("frames", state.num_frames) + ", " +
+            member("damaged", state.num_damaged) + ", " + member("packets", state.num_packets) + ", " +
+            member("unwanted", state.num_unwanted) + ", " + member("stalled", state.num_stalled) + "}";
   }
   text += ", \"faults\": {";
   for (std::size_t i = 0; i < kNumFaults; ++i) {

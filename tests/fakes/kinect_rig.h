@@ -27,9 +27,9 @@ struct RigOptions {
   BadDescriptors bad_descriptors = BadDescriptors::kNone;
   std::vector<std::string> faults;  ///< FaultInjector::configure
   std::uint64_t seed = 1;
-  ReplayOptions replay;             ///< no folder: the pattern
-  std::string log_file;             ///< empty: none
-  std::string served_folder;        ///< each distinct raw frame goes here once, video-NNNNNN.raw and depth-NNNNNN.raw; empty: none
+  ReplayOptions replay;       ///< no folder: the pattern
+  std::string log_file;       ///< empty: none
+  std::string served_folder;  ///< each distinct raw frame goes here once, video-NNNNNN.raw and depth-NNNNNN.raw; empty: none
 };
 
 enum class UsbDeviceId { kCamera, kMotor };
@@ -63,12 +63,12 @@ class KinectRig {
     std::uint32_t stamp_ticks = 0;
   };
   struct StreamState {
-    SentFrame sent;                    ///< the frame under way
+    SentFrame sent;  ///< the frame under way
     std::int64_t stalled_until_ns = 0;
-    bool is_damaged = false;           ///< the same
-    std::int64_t began_ns = 0;         ///< CLOCK_MONOTONIC
+    bool is_damaged = false;    ///< the same
+    std::int64_t began_ns = 0;  ///< CLOCK_MONOTONIC
     std::uint64_t num_frames = 0, num_damaged = 0, num_packets = 0, num_unwanted = 0, num_stalled = 0;
-    std::set<std::uint64_t> stored;    ///< show indices in the served folder
+    std::set<std::uint64_t> stored;  ///< show indices in the served folder
   };
 
   KinectRig() = default;

@@ -47,7 +47,8 @@ void on_depth(freenect_device* device, void* bytes, std::uint32_t stamp) {
   int num_pending = 0;
   for (std::size_t i = 0; i < kColorBytes; ++i) {
     pending = pending << 11 | values[i];
-    for (num_pending += 11; num_pending >= 8; num_pending -= 8) recorder.packed[at++] = static_cast<std::uint8_t>(pending >> (num_pending - 8));
+    for (num_pending += 11; num_pending >= 8; num_pending -= 8)
+      recorder.packed[at++] = static_cast<std::uint8_t>(pending >> (num_pending - 8));
   }
   recorder.depth.push_back({stamp, XXH3_64bits(recorder.packed.data(), recorder.packed.size())});
 }
@@ -64,7 +65,8 @@ bool check_registration(freenect_device* device) {
       for (int x = 80; x < kKinectWidth; x += 80) {
         const double slope = truth.color_focal_px / truth.depth_focal_px;
         const double at_infinity_px = 10 * static_cast<double>(truth.color_cm) / (20 * static_cast<double>(truth.pixel_cm));
-        const double added_px = kBaselineMm / (20 * static_cast<double>(truth.pixel_cm)) * (1 - 10 * static_cast<double>(truth.reference_cm) / z_mm);
+        const double added_px =
+            kBaselineMm / (20 * static_cast<double>(truth.pixel_cm)) * (1 - 10 * static_cast<double>(truth.reference_cm) / z_mm);
         const double expected_x = (x - 320) * slope + 320 - at_infinity_px + added_px, expected_y = (y - 240) * slope + 240;
         const std::int32_t* const entry = table.registration_table[y * kKinectWidth + x];
         const double got_x = (entry[0] + table.depth_to_rgb_shift[static_cast<int>(z_mm)]) / kScale - kToNearest;
@@ -76,7 +78,8 @@ bool check_registration(freenect_device* device) {
   double worst_mm = 0;
   for (int raw = 400; raw < 1000; ++raw) worst_mm = std::max(worst_mm, std::abs(table.raw_to_mm_shift[raw] - disparity_to_mm(truth, raw)));
   freenect_destroy_registration(&table);
-  std::printf("registration: libfreenect is at most %.2f px from the two pinhole cameras, and %.2f mm from our depth\n", worst_px, worst_mm);
+  std::printf("registration: libfreenect is at most %.2f px from the two pinhole cameras, and %.2f mm from our depth\n", worst_px,
+              worst_mm);
   return worst_px < 0.6 && worst_mm <= 1;  // rows are whole pixels there, millimetres too
 }
 

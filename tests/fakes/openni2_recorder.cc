@@ -34,8 +34,7 @@ int main(int argc, char** argv) {
   std::vector<OniStreamHandle> streams;
   for (const OniSensorType sensor : {ONI_SENSOR_COLOR, ONI_SENSOR_DEPTH, ONI_SENSOR_IR}) {
     OniStreamHandle stream = nullptr;
-    if (oniDeviceGetSensorInfo(device, sensor) == nullptr || oniDeviceCreateStream(device, sensor, &stream) != ONI_STATUS_OK)
-      continue;
+    if (oniDeviceGetSensorInfo(device, sensor) == nullptr || oniDeviceCreateStream(device, sensor, &stream) != ONI_STATUS_OK) continue;
     streams.push_back(stream);
     if (oniRecorderAttachStream(recorder, stream, std::strcmp(argv[2], "1") == 0 ? TRUE : FALSE) != ONI_STATUS_OK)
       return fail("cannot attach");

@@ -220,8 +220,7 @@ class SyntheticDevice final : public oni::driver::DeviceBase {
     return ONI_STATUS_OK;
   }
   OniStatus setProperty(int id, const void* data, int size) override {
-    if (id != ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION || size != static_cast<int>(sizeof(registration_)))
-      return ONI_STATUS_NOT_SUPPORTED;
+    if (id != ONI_DEVICE_PROPERTY_IMAGE_REGISTRATION || size != static_cast<int>(sizeof(registration_))) return ONI_STATUS_NOT_SUPPORTED;
     // Forgetful: takes the setting only at the second time, as after the streams have started.
     if (control().forgets_registration && !std::exchange(was_set_, true)) return ONI_STATUS_OK;
     std::memcpy(&registration_, data, sizeof(registration_));

@@ -13,18 +13,23 @@ void add_rig_options(CLI::App* app, RigArguments* a) {
   app->add_option("--serial", a->rig.kinect.serial, "Serial number of the camera")->capture_default_str();
   app->add_option("--folder", a->rig.replay.folder, "Show this TUM RGB-D or 7-Scenes folder (default: a pattern)");
   app->add_option("--frames", a->rig.replay.frames, "Which of its frames: start:stop:step[,...]");
-  app->add_option("--depth-unit-mm", a->rig.replay.depth_unit_mm, "Unit of its depth images: 1 for 7-Scenes, 0.2 for TUM RGB-D")->capture_default_str();
+  app->add_option("--depth-unit-mm", a->rig.replay.depth_unit_mm, "Unit of its depth images: 1 for 7-Scenes, 0.2 for TUM RGB-D")
+      ->capture_default_str();
   app->add_option("--cache", a->rig.replay.cache_file, "Keep the rendered frames in this file for the next start");
-  app->add_option("--at-end", a->at_end, "After its last frame: loop, or hold it")->check(CLI::IsMember({"loop", "hold"}))->capture_default_str();
+  app->add_option("--at-end", a->at_end, "After its last frame: loop, or hold it")
+      ->check(CLI::IsMember({"loop", "hold"}))
+      ->capture_default_str();
   app->add_flag("--wait-for-both", a->rig.kinect.advance_needs_both, "Stay at the first frame until both streams run");
   app->add_option("--geometry", a->geometry,
                   "kinect: depth f=585, colour f=525, 2.5 cm apart; registered: one camera (depth registered to colour, as TUM's)")
-      ->check(CLI::IsMember({"kinect", "registered"}))->capture_default_str();
+      ->check(CLI::IsMember({"kinect", "registered"}))
+      ->capture_default_str();
   app->add_option("--clock-ppm", a->clock_ppm, "How much too fast the device's clock is")->capture_default_str();
   app->add_option("--video-delay-ms", a->video_delay_ms, "Exposure of colour after that of depth")->capture_default_str();
   app->add_option("--fault", a->rig.faults, "KIND=PROBABILITY or KIND:TIMES, repeatable (an unknown kind lists them)");
   app->add_option("--seed", a->rig.seed, "Of the faults")->capture_default_str();
-  app->add_option("--descriptors", a->descriptors, "none, no-endpoints, truncated, bulk-endpoints, small-packets or empty")->capture_default_str();
+  app->add_option("--descriptors", a->descriptors, "none, no-endpoints, truncated, bulk-endpoints, small-packets or empty")
+      ->capture_default_str();
   app->add_option("--at", a->timed, "SECONDS:COMMAND, repeatable; a command of the control socket");
   app->add_option("--control", a->control_socket,
                   "UNIX socket for command lines: fault SPEC, stall video|depth|both MS|forever, resume, unplug, replug, counts");

@@ -66,7 +66,8 @@ double cpu_seconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-bool report_stream(const char* name, const std::vector<ReceivedFrame>& received, const std::string& log_file, double seconds, double min_hz) {
+bool report_stream(const char* name, const std::vector<ReceivedFrame>& received, const std::string& log_file, double seconds,
+                   double min_hz) {
   const auto sent = sent_frames(log_file, name);
   std::uint64_t num_wrong = 0;
   std::size_t num_expected = 0;
@@ -97,7 +98,8 @@ bool StreamCost::goes_on() {
 }
 
 void StreamCost::print(const char* driver) {
-  std::printf("%s: %.2f s, CPU %.1f %% of a core, %.0f allocations a second\n", driver, streamed_s_, 100 * (cpu_seconds() - begin_cpu_s_) / streamed_s_,
+  std::printf("%s: %.2f s, CPU %.1f %% of a core, %.0f allocations a second\n", driver, streamed_s_,
+              100 * (cpu_seconds() - begin_cpu_s_) / streamed_s_,
               static_cast<double>(num_allocations() - warm_allocations_) / std::max(streamed_s_ - warm_s_, 1e-3));
 }
 

@@ -156,7 +156,8 @@ namespace {
 void on_connected(UMockdevIoctlBase* base, UMockdevIoctlClient* client) {
   const camloc::fakes::Port& port = *reinterpret_cast<CamlocUsbHandler*>(base)->port;
   camloc::fakes::Peer peer = camloc::fakes::peers().take(port.device_file);
-  port.host->open_session(client, port.device, peer.pid, std::move(peer.connection), [fifo = port.fifo](bool is_ready) { fifo->set_ready(is_ready); });
+  port.host->open_session(client, port.device, peer.pid, std::move(peer.connection),
+                          [fifo = port.fifo](bool is_ready) { fifo->set_ready(is_ready); });
 }
 
 gboolean handle_ioctl(UMockdevIoctlBase* base, UMockdevIoctlClient* client) {
@@ -272,7 +273,8 @@ Status UmockdevBus::replug() {
   const std::string hub = std::string(kRootHub) + "/1-1";
   if (const Status status = impl_->plug_in(hub, hub_descriptors(0x0409, 0x005a), std::nullopt); !status) return status;
   if (impl_->has_motor) {
-    if (const Status status = impl_->plug_in(hub + "/1-1.1", impl_->rig->device(UsbDeviceId::kMotor).descriptors(), UsbDeviceId::kMotor); !status)
+    if (const Status status = impl_->plug_in(hub + "/1-1.1", impl_->rig->device(UsbDeviceId::kMotor).descriptors(), UsbDeviceId::kMotor);
+        !status)
       return status;
   }
   return impl_->plug_in(hub + "/1-1.3", impl_->rig->device(UsbDeviceId::kCamera).descriptors(), UsbDeviceId::kCamera);

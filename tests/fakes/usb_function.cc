@@ -37,9 +37,7 @@ UsbSetup parse_setup(std::span<const std::uint8_t> bytes) {
   return {bytes[0], bytes[1], word(2), word(4), word(6)};
 }
 
-std::uint16_t UsbDescriptors::word(std::size_t at) const {
-  return static_cast<std::uint16_t>(device.at(at) | device.at(at + 1) << 8);
-}
+std::uint16_t UsbDescriptors::word(std::size_t at) const { return static_cast<std::uint16_t>(device.at(at) | device.at(at + 1) << 8); }
 
 const std::string& UsbDescriptors::serial() const {
   static const std::string kNone;

@@ -26,8 +26,8 @@ struct UsbSetup {
 [[nodiscard]] UsbSetup parse_setup(std::span<const std::uint8_t> bytes);
 
 struct ControlReply {
-  bool is_stalled = false;          ///< the device refuses; the host sees EPIPE
-  std::vector<std::uint8_t> data;   ///< of an IN request, at most setup.length bytes; may be empty
+  bool is_stalled = false;         ///< the device refuses; the host sees EPIPE
+  std::vector<std::uint8_t> data;  ///< of an IN request, at most setup.length bytes; may be empty
 };
 
 struct UsbDescriptors {
@@ -58,8 +58,7 @@ class UsbFunction {
   virtual void reset(std::int64_t now_ns) = 0;
 
  protected:
-  [[nodiscard]] virtual ControlReply vendor_request(const UsbSetup& setup, std::span<const std::uint8_t> data_out,
-                                                    std::int64_t now_ns) = 0;
+  [[nodiscard]] virtual ControlReply vendor_request(const UsbSetup& setup, std::span<const std::uint8_t> data_out, std::int64_t now_ns) = 0;
 
  private:
   [[nodiscard]] ControlReply standard_request(const UsbSetup& setup) const;

@@ -14,7 +14,7 @@ namespace camloc::fakes {
 namespace {
 
 constexpr std::int64_t kMicroframeNs = 125'000;
-constexpr std::int64_t kTickNs = 1'000'000;      // completions come in batches, as with a host controller's interrupts
+constexpr std::int64_t kTickNs = 1'000'000;  // completions come in batches, as with a host controller's interrupts
 constexpr std::int64_t kIdleNs = 20'000'000;
 constexpr std::int64_t kMaxHoldNs = 100'000'000;
 
@@ -83,8 +83,8 @@ std::string UsbfsHost::command(std::string_view line) {
 
 std::string UsbfsHost::counts() const {
   const auto member = [](const char* name, std::uint64_t value) { return std::string("\"") + name + "\": " + std::to_string(value); };
-  return "\"usbfs\": {" + member("ioctls", num_ioctls_) + ", " + member("submitted", num_submitted_) + ", " + member("reaped", num_reaped_) +
-         ", " + member("discarded", num_discarded_) + ", " + member("sessions", num_sessions_) + ", " +
+  return "\"usbfs\": {" + member("ioctls", num_ioctls_) + ", " + member("submitted", num_submitted_) + ", " +
+         member("reaped", num_reaped_) + ", " + member("discarded", num_discarded_) + ", " + member("sessions", num_sessions_) + ", " +
          member("open_sessions", sessions_.size()) + ", " + member("driver_detached", num_detached_) + ", " +
          member("driver_attached", num_attached_) + ", " + member("held_us", static_cast<std::uint64_t>(held_ns_ / 1000)) + "}";
 }

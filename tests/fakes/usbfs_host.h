@@ -58,16 +58,16 @@ class UsbfsHost {
   [[nodiscard]] std::string counts() const;
 
   struct Urb {
-    std::uint64_t address = 0;         ///< in the client
+    std::uint64_t address = 0;  ///< in the client
     std::uint64_t buffer = 0;
     std::size_t next_packet = 0;
     std::vector<std::uint32_t> lengths;  ///< of the client's packet buffers
     std::vector<std::uint32_t> actual;
     std::vector<std::int32_t> statuses;
-    std::vector<std::uint8_t> data;    ///< what arrived, one packet after the other
+    std::vector<std::uint8_t> data;  ///< what arrived, one packet after the other
     std::int32_t status = 0;
     std::int32_t actual_length = 0;
-    std::size_t data_skip = 0;         ///< where `data` goes in the buffer (after a setup packet)
+    std::size_t data_skip = 0;  ///< where `data` goes in the buffer (after a setup packet)
     bool is_iso = false;
   };
   using UrbPtr = std::unique_ptr<Urb>;
@@ -76,15 +76,15 @@ class UsbfsHost {
     pid_t pid = 0;
     UniqueFd connection;
     ReadySink ready;
-    bool is_gone = false;              ///< its device was unplugged
+    bool is_gone = false;  ///< its device was unplugged
     bool has_claimed = false;
     std::array<std::deque<UrbPtr>, 2> queued;  ///< by stream
     std::deque<UrbPtr> done;
   };
   struct Endpoint {
-    std::int64_t next_ns = 0;          ///< of the next microframe
+    std::int64_t next_ns = 0;  ///< of the next microframe
     bool is_listening = false;
-    std::int64_t dry_since_ns = 0;     ///< CLOCK_MONOTONIC when the last buffer was used up
+    std::int64_t dry_since_ns = 0;  ///< CLOCK_MONOTONIC when the last buffer was used up
   };
 
   void run();
@@ -119,8 +119,8 @@ class UsbfsHost {
   bool is_stopping_ = false;
   std::map<const void*, Session> sessions_;
   std::array<Endpoint, 2> endpoints_;
-  std::int64_t next_check_ns_ = 0;     ///< for dead sessions, CLOCK_MONOTONIC
-  std::int64_t origin_ns_;             ///< CLOCK_MONOTONIC of bus time 0
+  std::int64_t next_check_ns_ = 0;  ///< for dead sessions, CLOCK_MONOTONIC
+  std::int64_t origin_ns_;          ///< CLOCK_MONOTONIC of bus time 0
   std::int64_t held_ns_ = 0;
   std::int64_t bus_ns_ = 0;
   IsoPacket packet_;

@@ -53,8 +53,8 @@ IoctlResult UsbfsHost::dispatch(Session* session, unsigned long request, std::ui
   if (session->is_gone) return failed(ENODEV);
   switch (request) {
     case USBDEVFS_GET_CAPABILITIES: {
-      const std::uint32_t caps = USBDEVFS_CAP_ZERO_PACKET | USBDEVFS_CAP_BULK_CONTINUATION | USBDEVFS_CAP_NO_PACKET_SIZE_LIM |
-                                 USBDEVFS_CAP_REAP_AFTER_DISCONNECT;
+      const std::uint32_t caps =
+          USBDEVFS_CAP_ZERO_PACKET | USBDEVFS_CAP_BULK_CONTINUATION | USBDEVFS_CAP_NO_PACKET_SIZE_LIM | USBDEVFS_CAP_REAP_AFTER_DISCONNECT;
       return write_memory(session->pid, argument, &caps, sizeof caps) ? IoctlResult{} : failed(EFAULT);
     }
     case USBDEVFS_GET_SPEED: return {3, 0};  // high speed
@@ -144,7 +144,8 @@ IoctlResult UsbfsHost::submit(Session* session, std::uint64_t argument) {
 }
 
 IoctlResult UsbfsHost::submit_control(Session* session, UrbPtr urb, std::int32_t buffer_length) {
-  if (buffer_length < static_cast<std::int32_t>(kSetupBytes) || buffer_length > static_cast<std::int32_t>(kMaxControlBytes)) return failed(EINVAL);
+  if (buffer_length < static_cast<std::int32_t>(kSetupBytes) || buffer_length > static_cast<std::int32_t>(kMaxControlBytes))
+    return failed(EINVAL);
   std::array<std::uint8_t, kMaxControlBytes> bytes;
   const auto size = static_cast<std::size_t>(buffer_length);
   if (!read_memory(session->pid, urb->buffer, bytes.data(), size)) return failed(EFAULT);
@@ -152,7 +153,8 @@ IoctlResult UsbfsHost::submit_control(Session* session, UrbPtr urb, std::int32_t
   if (kSetupBytes + setup.length > size) return failed(EINVAL);
 
   advance();
-  const ControlReply reply = rig_->control(session->device, setup, std::span(bytes).subspan(kSetupBytes, setup.is_in() ? 0 : setup.length), bus_ns_);
+  const ControlReply reply =
+      rig_->control(session->device, setup, std::span(bytes).subspan(kSetupBytes, setup.is_in() ? 0 : setup.length), bus_ns_);
   urb->status = reply.is_stalled ? -EPIPE : 0;
   urb->data_skip = kSetupBytes;
   if (!reply.is_stalled) {
@@ -170,7 +172,8 @@ IoctlResult UsbfsHost::submit_iso(Session* session, UrbPtr urb, int endpoint, st
   if (num_packets < 1 || num_packets > kMaxIsoPackets) return failed(EINVAL);
   const auto count = static_cast<std::size_t>(num_packets);
   std::array<usbdevfs_iso_packet_desc, static_cast<std::size_t>(kMaxIsoPackets)> packets;
-  if (!read_memory(session->pid, urb->address + offsetof(usbdevfs_urb, iso_frame_desc), packets.data(), count * sizeof packets[0])) return failed(EFAULT);
+  if (!read_memory(session->pid, urb->address + offsetof(usbdevfs_urb, iso_frame_desc), packets.data(), count * sizeof packets[0]))
+    return failed(EFAULT);
   urb->lengths.resize(count);
   for (std::size_t i = 0; i < count; ++i) urb->lengths[i] = packets[i].length;
   urb->actual.assign(count, 0);

@@ -57,7 +57,7 @@ class UsbredirDevice {
   usbredirparser* parser_;
   std::array<bool, 2> is_iso_on_{};
   std::array<std::uint32_t, 2> next_id_{};
-  std::int64_t bus_ns_ = 0;           ///< of the next microframe
+  std::int64_t bus_ns_ = 0;  ///< of the next microframe
   std::int64_t now_ns_ = 0;
   std::uint64_t num_overflowed_ = 0;
   IsoPacket packet_;

@@ -3,11 +3,11 @@
 //
 // Extraction and matching must not touch the heap after construction. malloc and its relatives are replaced in this test
 // program by functions that count and pass on.
+#include <gtest/gtest.h>
+
 #include <atomic>
 #include <cstdlib>
 #include <random>
-
-#include <gtest/gtest.h>
 
 #include "core/features/matcher.h"
 #include "core/features/orb_extractor.h"
@@ -72,8 +72,8 @@ TEST_F(AllocationTest, CounterCounts) {
 }
 
 TEST_F(AllocationTest, ExtractAndMatchDoNotAllocate) {
-  const std::vector<cv::Mat> images{textured_image(640, 480, 1), noise_image(640, 480, 2),
-                                    cv::Mat(480, 640, CV_8UC1, cv::Scalar(90)), textured_image(640, 480, 3)};
+  const std::vector<cv::Mat> images{textured_image(640, 480, 1), noise_image(640, 480, 2), cv::Mat(480, 640, CV_8UC1, cv::Scalar(90)),
+                                    textured_image(640, 480, 3)};
   OrbExtractor extractor(640, 480, OrbOptions{});
   FeatureGrid grid(640, 480, 1000);
   GuidedMatcher guided(GuidedMatcherOptions{}, 1000);
@@ -82,8 +82,8 @@ TEST_F(AllocationTest, ExtractAndMatchDoNotAllocate) {
   const Features mapped = extractor.extract(view_of(images[0]));
   std::vector<ProjectedLandmark> landmarks;
   for (std::size_t i = 0; i < mapped.size(); ++i)
-    landmarks.push_back({static_cast<std::int32_t>(i), mapped.keypoints[i].u, mapped.keypoints[i].v, 15, 0, 7,
-                         static_cast<std::uint32_t>(i), 1});
+    landmarks.push_back(
+        {static_cast<std::int32_t>(i), mapped.keypoints[i].u, mapped.keypoints[i].v, 15, 0, 7, static_cast<std::uint32_t>(i), 1});
 
   std::size_t num_matches = 0;
   const long before = num_allocations;

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/features/fast_corners.h"
 
-#include <map>
-
 #include <gtest/gtest.h>
+
+#include <map>
 #include <opencv2/features2d.hpp>
 
 #include "tests/features/reference_images.h"

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/features/hamming.h"
 
-#include <bitset>
-#include <random>
-
 #include <gtest/gtest.h>
+
+#include <bitset>
 #include <opencv2/core.hpp>
+#include <random>
 
 namespace camloc {
 namespace {
@@ -16,8 +16,7 @@ std::vector<Descriptor> random_descriptors(std::size_t count, int num_random_bit
   std::mt19937_64 random(seed);
   std::vector<Descriptor> descriptors(count);
   for (Descriptor& descriptor : descriptors)
-    for (int i = 0; i < num_random_bits; ++i)
-      descriptor.bits[static_cast<std::size_t>(i % 4)] |= (random() & 1) << (i * 7 % 64);
+    for (int i = 0; i < num_random_bits; ++i) descriptor.bits[static_cast<std::size_t>(i % 4)] |= (random() & 1) << (i * 7 % 64);
   return descriptors;
 }
 
@@ -33,8 +32,7 @@ NearestDescriptor nearest_by_definition(const Descriptor& query, const std::vect
     if (const int distance = distance_by_bits(query, train[i]); distance < nearest.distance)
       nearest = {static_cast<std::uint32_t>(i), static_cast<std::uint16_t>(distance), 257};
   for (std::size_t i = 0; i < train.size(); ++i)
-    if (i != nearest.index)
-      nearest.second = std::min(nearest.second, static_cast<std::uint16_t>(distance_by_bits(query, train[i])));
+    if (i != nearest.index) nearest.second = std::min(nearest.second, static_cast<std::uint16_t>(distance_by_bits(query, train[i])));
   return nearest;
 }
 
@@ -59,8 +57,7 @@ TEST(Hamming, DistancesFillsWhatItPromisesAndNoMore) {
   for (std::size_t count = 0; count <= train.size(); ++count) {
     std::vector<std::uint16_t> distances(train.size() + 1, 999);
     hamming_distances(query, {train.data(), count}, distances.data());
-    for (std::size_t i = 0; i < distances.size(); ++i)
-      ASSERT_EQ(distances[i], i < count ? distance_by_bits(query, train[i]) : 999);
+    for (std::size_t i = 0; i < distances.size(); ++i) ASSERT_EQ(distances[i], i < count ? distance_by_bits(query, train[i]) : 999);
   }
 }
 

@@ -45,9 +45,9 @@ TEST_P(ExactResizeTest, EqualsOpenCv) {
 
 INSTANTIATE_TEST_SUITE_P(Sizes, ExactResizeTest,
                          ::testing::Values(Sizes{640, 480, 533, 400}, Sizes{533, 400, 444, 333}, Sizes{444, 333, 370, 278},
-                                         Sizes{641, 479, 534, 399}, Sizes{100, 100, 43, 91}, Sizes{17, 3, 14, 2},
-                                         Sizes{5, 5, 4, 4}, Sizes{640, 1, 533, 1}, Sizes{2, 2, 1, 1}, Sizes{333, 33, 111, 11},
-                                         Sizes{31, 29, 62, 58}, Sizes{300, 200, 300, 150}));
+                                           Sizes{641, 479, 534, 399}, Sizes{100, 100, 43, 91}, Sizes{17, 3, 14, 2}, Sizes{5, 5, 4, 4},
+                                           Sizes{640, 1, 533, 1}, Sizes{2, 2, 1, 1}, Sizes{333, 33, 111, 11}, Sizes{31, 29, 62, 58},
+                                           Sizes{300, 200, 300, 150}));
 
 TEST(ImagePyramid, LevelsEqualRepeatedOpenCvResize) {
   const cv::Mat image = textured_image(640, 480, 1);

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/features/matcher.h"
 
+#include <gtest/gtest.h>
+
 #include <random>
 #include <set>
-
-#include <gtest/gtest.h>
 
 #include "core/features/hamming.h"
 
@@ -35,8 +35,7 @@ Features features_at(const std::vector<Keypoint>& keypoints, std::mt19937_64& ra
 TEST(FeatureGrid, HoldsEveryFeatureOnceInItsBucket) {
   std::mt19937_64 random(1);
   std::vector<Keypoint> keypoints;
-  for (int i = 0; i < 500; ++i)
-    keypoints.push_back({static_cast<float>(random() % 640), static_cast<float>(random() % 480), 0, 0, 0});
+  for (int i = 0; i < 500; ++i) keypoints.push_back({static_cast<float>(random() % 640), static_cast<float>(random() % 480), 0, 0, 0});
   keypoints.push_back({-5, 1000, 0, 0, 0});  // outside: nearest bucket
   FeatureGrid grid(640, 480, 600);
   for (int repeat = 0; repeat < 2; ++repeat) {
@@ -123,8 +122,8 @@ TEST_F(GuidedMatcherTest, SurvivesNonsense) {
     landmarks.push_back({1, 100, value, 8, 0, 7, 0, 1});
     landmarks.push_back({1, 300, 300, value, 0, 7, 0, 0});
   }
-  landmarks.push_back({1, 100, 100, 8, 0, 7, 1000, 5});          // beyond the descriptors
-  landmarks.push_back({1, 300, 100, 8, 0, 7, 0, 0xffffffffU});   // range longer than the descriptors
+  landmarks.push_back({1, 100, 100, 8, 0, 7, 1000, 5});         // beyond the descriptors
+  landmarks.push_back({1, 300, 100, 8, 0, 7, 0, 0xffffffffU});  // range longer than the descriptors
   EXPECT_EQ(match(features, landmarks, features.descriptors).size(), 0U);
 }
 
@@ -150,7 +149,9 @@ TEST_F(CandidateMatcherTest, EqualsTheDefinition) {
       ASSERT_TRUE(candidates_.add(descriptor, landmark * 7 - 500, 0));
     }
   std::vector<Match> expected;
-  const auto distance_to = [&](std::size_t f, std::size_t c) { return hamming_distance(features_.descriptors[f], candidates_.descriptors[c]); };
+  const auto distance_to = [&](std::size_t f, std::size_t c) {
+    return hamming_distance(features_.descriptors[f], candidates_.descriptors[c]);
+  };
   for (std::size_t f = 0; f < features_.size(); ++f) {
     std::size_t best = 0;
     for (std::size_t c = 0; c < candidates_.size; ++c)

@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/features/orb_extractor.h"
 
+#include <gtest/gtest.h>
+
 #include <bit>
 #include <cmath>
 #include <numbers>
-
-#include <gtest/gtest.h>
 #include <opencv2/features2d.hpp>
 
 #include "core/features/hamming.h"
@@ -56,13 +56,13 @@ void expect_descriptors_of_opencv(const cv::Mat& image, int num_levels, float sc
   options.num_levels = num_levels;
   options.scale_factor = scale_factor;
   OrbExtractor extractor(image.cols, image.rows, options);
-  const Features& features = extractor.describe(view_of(image), to_keypoints(reference, ImagePyramid(image.cols, image.rows, num_levels, scale_factor)));
+  const Features& features =
+      extractor.describe(view_of(image), to_keypoints(reference, ImagePyramid(image.cols, image.rows, num_levels, scale_factor)));
   ASSERT_EQ(features.size(), reference.size());  // cv::ORB keeps 31 px from the border, more than the 19 px needed
   std::size_t num_equal = 0, sum = 0;
   double worst_angle = 0;
   for (std::size_t i = 0; i < reference.size(); ++i) {
-    const int distance =
-        hamming_distance(features.descriptors[i], to_descriptor(reference_descriptors.row(static_cast<int>(i))));
+    const int distance = hamming_distance(features.descriptors[i], to_descriptor(reference_descriptors.row(static_cast<int>(i))));
     num_equal += distance == 0;
     sum += static_cast<std::size_t>(distance);
     const double angle = reference[i].angle * std::numbers::pi / 180;
@@ -107,9 +107,7 @@ TEST(OrbExtractor, KeepsOrderBoundsAndBorder) {
     EXPECT_GE(keypoint.angle_rad, 0);
     EXPECT_LT(keypoint.angle_rad, 2 * std::numbers::pi);
     EXPECT_GE(keypoint.response, 7);
-    if (i > 0) {
-      EXPECT_LT(rank(features.keypoints[i - 1]), rank(keypoint));
-    }
+    if (i > 0) { EXPECT_LT(rank(features.keypoints[i - 1]), rank(keypoint)); }
   }
 }
 
@@ -210,9 +208,7 @@ TEST(OrbExtractor, SurvivesTinyImages) {
     OrbExtractor extractor(width, height, OrbOptions{});
     const cv::Mat image = noise_image(width, height, 2);
     const Features& features = extractor.extract(view_of(image));
-    if (width <= 38 || height <= 38) {
-      EXPECT_EQ(features.size(), 0U);
-    }
+    if (width <= 38 || height <= 38) { EXPECT_EQ(features.size(), 0U); }
     (void)extractor.describe(view_of(image), {{20, 19, 0, 0, 0}, {1e9F, 3, 0, 0, 0}, {-1e9F, 3, 0, 0, 7}, {0, 0, 0, 0, 200}});
   }
 }

@@ -7,19 +7,16 @@
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <opencv2/imgproc.hpp>
 #include <random>
 #include <string>
 #include <vector>
-
-#include <opencv2/imgproc.hpp>
 
 #include "core/base/frame.h"
 
 namespace camloc {
 
-inline ImageView<std::uint8_t> view_of(const cv::Mat& image) {
-  return {image.data, image.cols, image.rows, static_cast<int>(image.step)};
-}
+inline ImageView<std::uint8_t> view_of(const cv::Mat& image) { return {image.data, image.cols, image.rows, static_cast<int>(image.step)}; }
 
 /// Overlapping rectangles and discs of random grey under mild noise: corners at all scales, flat parts in between.
 inline cv::Mat textured_image(int width, int height, unsigned seed) {
@@ -37,7 +34,8 @@ inline cv::Mat textured_image(int width, int height, unsigned seed) {
   }
   cv::GaussianBlur(image, image, cv::Size(3, 3), 0.8);
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) image.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(image.at<std::uint8_t>(y, x) + below(7) - 3);
+    for (int x = 0; x < width; ++x)
+      image.at<std::uint8_t>(y, x) = cv::saturate_cast<std::uint8_t>(image.at<std::uint8_t>(y, x) + below(7) - 3);
   return image;
 }
 

@@ -22,7 +22,8 @@ void require(bool condition) {
 void check_consistent(const ColmapModel& model) {
   require(!model.cameras.empty() && !model.images.empty());
   for (const auto& image : model.images) {
-    require(!image.name.empty() && std::abs(image.T_camera_world.rotation.norm() - 1) < 1e-9 && image.T_camera_world.translation.allFinite());
+    require(!image.name.empty() && std::abs(image.T_camera_world.rotation.norm() - 1) < 1e-9 &&
+            image.T_camera_world.translation.allFinite());
     for (const auto& seen : image.observations) require(seen.point < model.points.size());
   }
   for (const auto& point : model.points) require(point.position.allFinite());

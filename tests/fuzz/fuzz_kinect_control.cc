@@ -28,13 +28,20 @@ class FuzzedCamera final : public ControlTransport {
   [[nodiscard]] Result<std::size_t> receive(std::span<std::uint8_t> reply) override {
     if (++num_polls_ > 100'000) std::abort();  // it would never end
     if (size_ - at_ < 3) return std::size_t{0};
-    const std::size_t length = std::min<std::size_t>({static_cast<std::size_t>(data_[at_] | data_[at_ + 1] << 8) % 600, size_ - at_ - 2, reply.size()});
+    const std::size_t length =
+        std::min<std::size_t>({static_cast<std::size_t>(data_[at_] | data_[at_ + 1] << 8) % 600, size_ - at_ - 2, reply.size()});
     const std::uint8_t* const bytes = data_ + at_ + 2;
     at_ += 2 + length;
     std::copy_n(bytes, length, reply.begin());
     if (length >= kControlHeaderBytes && reply[0] == 1) {
-      const std::uint8_t header[] = {'R', 'B', reply[2], reply[3], static_cast<std::uint8_t>(command_), static_cast<std::uint8_t>(command_ >> 8),
-                                     static_cast<std::uint8_t>(tag_), static_cast<std::uint8_t>(tag_ >> 8)};
+      const std::uint8_t header[] = {'R',
+                                     'B',
+                                     reply[2],
+                                     reply[3],
+                                     static_cast<std::uint8_t>(command_),
+                                     static_cast<std::uint8_t>(command_ >> 8),
+                                     static_cast<std::uint8_t>(tag_),
+                                     static_cast<std::uint8_t>(tag_ >> 8)};
       std::copy_n(header, kControlHeaderBytes, reply.begin());
     }
     return length;

@@ -66,7 +66,8 @@ void read_matrix(const Scratch& scratch, const std::string& text) {
 void read_selection(const std::string& text) {
   const auto selection = camloc::select_frames(text, "::3", 50);
   check_status(selection.status());
-  if (selection) for (const std::size_t index : *selection) require(index < 50 && index % 3 != 0);
+  if (selection)
+    for (const std::size_t index : *selection) require(index < 50 && index % 3 != 0);
   const auto url = camloc::parse_source_url(text);
   if (url) (void)url->number_option("speed", 0, 0, 1);
 }

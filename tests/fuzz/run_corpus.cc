@@ -27,7 +27,9 @@ std::vector<std::uint8_t> damaged(std::vector<std::uint8_t> bytes, std::mt19937&
   switch (random() % 4) {
     case 0: bytes.resize(position()); break;
     case 1: bytes[position()] ^= static_cast<std::uint8_t>(1U << (random() % 8)); break;
-    case 2: for (int i = 0; i < 8; ++i) bytes[position()] = static_cast<std::uint8_t>(random()); break;
+    case 2:
+      for (int i = 0; i < 8; ++i) bytes[position()] = static_cast<std::uint8_t>(random());
+      break;
     default: bytes.insert(bytes.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(position())); break;
   }
   return bytes;
@@ -39,7 +41,10 @@ int main(int argc, char** argv) {
   constexpr int kDamagedCopies = 200;
   std::vector<std::filesystem::path> files;
   for (int i = 1; i < argc; ++i) {
-    if (!std::filesystem::is_directory(argv[i])) { files.emplace_back(argv[i]); continue; }
+    if (!std::filesystem::is_directory(argv[i])) {
+      files.emplace_back(argv[i]);
+      continue;
+    }
     for (const auto& entry : std::filesystem::directory_iterator(argv[i])) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());

@@ -32,7 +32,7 @@ struct SceneOptions {
   double focal_px = 525.0;          // true focal length
   double assumed_focal_px = 525.0;  // what turned pixels into normalized coordinates
   bool has_depth = true;
-  bool is_rank_informative = false; // outliers rank worse than inliers, with much overlap
+  bool is_rank_informative = false;  // outliers rank worse than inliers, with much overlap
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   DepthNoise depth_noise;
 };

@@ -34,7 +34,8 @@ struct Carried {
   std::vector<OrientedReading> readings;
 };
 
-Carried carry(int count, double noise_mps2, double outlier_share, const Eigen::Matrix3d& R_camera_accelerometer, double tilt_sigma_rad = 0.26) {
+Carried carry(int count, double noise_mps2, double outlier_share, const Eigen::Matrix3d& R_camera_accelerometer,
+              double tilt_sigma_rad = 0.26) {
   std::mt19937 rng(1);
   std::uniform_real_distribution<double> uniform(0, 1);
   const Eigen::Quaterniond R_map_level = exp_so3({0.3, -0.2, 0.9});
@@ -123,10 +124,14 @@ struct Room {
   void add_walls(int count) {
     for (int i = 0; i < count; ++i) {
       const double along = uniform(0, 28), z = uniform(0, 2.6);
-      if (along < 8) points.push_back({along, 0, z});
-      else if (along < 16) points.push_back({along - 8, 6, z});
-      else if (along < 22) points.push_back({0, along - 16, z});
-      else points.push_back({8, along - 22, z});
+      if (along < 8)
+        points.push_back({along, 0, z});
+      else if (along < 16)
+        points.push_back({along - 8, 6, z});
+      else if (along < 22)
+        points.push_back({0, along - 16, z});
+      else
+        points.push_back({8, along - 22, z});
     }
   }
   void add_clutter(int count) {

@@ -122,9 +122,10 @@ TEST(P3p, FindsAllSolutionsThatOpenCvFinds) {
     const P3pSolutions solutions = solve_p3p(problem.bearings, problem.points);
     for (std::size_t k = 0; k < rotations.size(); ++k) {
       const cv::Mat &r = rotations[k], &t = translations[k];
-      const Problem theirs{problem.bearings, problem.points,
-                           {exp_so3({r.at<double>(0), r.at<double>(1), r.at<double>(2)}),
-                            {t.at<double>(0), t.at<double>(1), t.at<double>(2)}}};
+      const Problem theirs{
+          problem.bearings,
+          problem.points,
+          {exp_so3({r.at<double>(0), r.at<double>(1), r.at<double>(2)}), {t.at<double>(0), t.at<double>(1), t.at<double>(2)}}};
       bool is_valid = true;  // theirs includes inexact ones and points behind the camera
       for (std::size_t j = 0; j < 3; ++j) {
         is_valid &= ((theirs.T_camera_map * problem.points[j]).normalized() - problem.bearings[j]).norm() < 1e-7;

@@ -46,7 +46,8 @@ Rigid3 opencv_pose(const Correspondences& pairs, int iterations) {
   cv::Vec3d r, t;
   const cv::Matx33d K(525, 0, 0, 0, 525, 0, 0, 0, 1);
   cv::theRNG().state = 42;
-  const bool is_found = cv::solvePnPRansac(points, pixels, K, cv::noArray(), r, t, false, iterations, 5.0F, 0.99, cv::noArray(), cv::SOLVEPNP_P3P);
+  const bool is_found =
+      cv::solvePnPRansac(points, pixels, K, cv::noArray(), r, t, false, iterations, 5.0F, 0.99, cv::noArray(), cv::SOLVEPNP_P3P);
   return is_found ? Rigid3{exp_so3({r[0], r[1], r[2]}), {t[0], t[1], t[2]}}.inverse() : Rigid3{{}, Eigen::Vector3d::Constant(1e3)};
 }
 

@@ -28,7 +28,8 @@ TEST(PoseJacobian, AgreesWithDifferences) {
     for (int k = 0; k < 6; ++k) {
       constexpr double kStep = 1e-6;
       const Eigen::Vector3d difference = (seen(moved_in_camera_axes(T_map_camera, kStep * Vector6d::Unit(k)), p_map) -
-                                          seen(moved_in_camera_axes(T_map_camera, -kStep * Vector6d::Unit(k)), p_map)) / (2 * kStep);
+                                          seen(moved_in_camera_axes(T_map_camera, -kStep * Vector6d::Unit(k)), p_map)) /
+                                         (2 * kStep);
       EXPECT_NEAR(J.u[k], difference.x(), 1e-7 * (1 + std::abs(J.u[k])));
       EXPECT_NEAR(J.v[k], difference.y(), 1e-7 * (1 + std::abs(J.v[k])));
       EXPECT_NEAR(J.z[k], difference.z(), 1e-7 * (1 + std::abs(J.z[k])));

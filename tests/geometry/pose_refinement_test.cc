@@ -233,9 +233,7 @@ TEST(PoseRefinement, SaysSoWhenThereIsTooLittle) {
   Correspondences same(50);
   for (int i = 0; i < 50; ++i) same.add(0, 0, 0, 0, 2, 0, 1, 0, i, i);
   const PoseRefinementResult result = refine_pose(same, {}, 525, {}, nullptr);
-  if (result.is_converged) {
-    EXPECT_GT(result.covariance.trace(), 1.0);
-  }
+  if (result.is_converged) { EXPECT_GT(result.covariance.trace(), 1.0); }
   // Not a number must not be taken for a pose.
   Correspondences bad(50);
   for (int i = 0; i < 50; ++i) bad.add(std::nanf(""), 0, std::nanf(""), 0, 2, 0, 1, 0, i, i);

@@ -22,9 +22,7 @@ Matrix6d random_covariance(std::mt19937& rng, double position_sigma_m, double ro
   return root * root.transpose() / 6.0;
 }
 
-Rigid3 moved(const Rigid3& T, const Vector6d& error) {
-  return {exp_so3(error.tail<3>()) * T.rotation, T.translation + error.head<3>()};
-}
+Rigid3 moved(const Rigid3& T, const Vector6d& error) { return {exp_so3(error.tail<3>()) * T.rotation, T.translation + error.head<3>()}; }
 
 Vector6d sample(std::mt19937& rng, const Matrix6d& root) {
   Vector6d v;

@@ -25,7 +25,10 @@ TEST(Accelerometer, MultiplesOfGravityBecomeMetres) {
 }
 
 TEST(Accelerometer, ErrorsNameFileAndLine) {
-  const struct { const char* text; const char* part; } cases[] = {
+  const struct {
+    const char* text;
+    const char* part;
+  } cases[] = {
       {"", "a.txt: no reading"},
       {"1 0 9.8\n", "a.txt:1: 3 fields"},
       {"1 0 9.8 0\nx 0 9.8 0\n", "a.txt:2: stamp 'x'"},

@@ -102,7 +102,10 @@ TEST(CameraFile, OddNumbersRoundTripToTheLastBit) {
 
 TEST(CameraFile, ErrorsNameFileAndLine) {
   const std::string good = kGood;
-  const struct { std::string text; const char* part; } cases[] = {
+  const struct {
+    std::string text;
+    const char* part;
+  } cases[] = {
       {good + "fz = 1\n", "cam.toml:8: unknown key 'fz' in [color]"},
       {"nane = \"x\"\n" + good, "cam.toml:1: unknown key 'nane'"},
       {good + "[dept]\n", "cam.toml:8: unknown key 'dept'"},
@@ -142,7 +145,8 @@ TEST(CameraFile, ErrorsNameFileAndLine) {
 
 TEST(CameraFile, ValuesThatMakeNoCameraAreRefused) {
   for (const char* line : {"fx = -525\n", "fx = 0\n", "cx = 1e9\n"}) {
-    const std::string text = std::string("[color]\nwidth = 640\nheight = 480\nfy = 525\ncy = 240\n") + (line[0] == 'f' ? "cx = 320\n" : "fx = 525\n") + line;
+    const std::string text =
+        std::string("[color]\nwidth = 640\nheight = 480\nfy = 525\ncy = 240\n") + (line[0] == 'f' ? "cx = 320\n" : "fx = 525\n") + line;
     const auto camera = parse_camera(text, "cam.toml");
     ASSERT_FALSE(camera.is_ok()) << line;
     EXPECT_TRUE(camera.status().message().starts_with("cam.toml")) << camera.status().message();

@@ -82,7 +82,8 @@ TEST(CameraYaml, RosCameraInfo) {
   EXPECT_EQ(camera.color.fx, 525.1);
   EXPECT_EQ(camera.color.cy, 239.5);
   EXPECT_EQ(camera.color.distortion[4], 1.16);
-  const RgbdCamera message = parsed("height: 480\nwidth: 640\ndistortion_model: equidistant\nd: [0.1, 0.2, 0.3, 0.4]\nk: [1.5, 0, 320, 0, 1.5, 240, 0, 0, 1]\n");
+  const RgbdCamera message =
+      parsed("height: 480\nwidth: 640\ndistortion_model: equidistant\nd: [0.1, 0.2, 0.3, 0.4]\nk: [1.5, 0, 320, 0, 1.5, 240, 0, 0, 1]\n");
   EXPECT_EQ(message.color.lens, LensModel::kEquidistant);
   EXPECT_EQ(message.color.width, 640);
 }
@@ -118,14 +119,20 @@ TEST(CameraYaml, OrbSlamWithDepthFactor) {
   EXPECT_EQ(camera.color.distortion, (std::array<double, 5>{0.262383, -0.953104, -0.005358, 0.002628, 1.163314}));
   EXPECT_DOUBLE_EQ(camera.depth_unit_m, 0.0002);
   std::string three = kOrbSlam;
-  for (const char* key : {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"}) three.replace(three.find(std::string("Camera.") + key), 9, std::string("Camera1.") + key);
+  for (const char* key : {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"})
+    three.replace(three.find(std::string("Camera.") + key), 9, std::string("Camera1.") + key);
   three.insert(three.find('\n') + 1, "File.version: \"1.0\"\n");
   EXPECT_EQ(parsed(three).color.distortion, camera.color.distortion);
 }
 
 TEST(CameraYaml, ErrorsNameFileAndLineOrKey) {
-  const auto changed = [](std::string text, const std::string& from, const std::string& to) { return text.replace(text.find(from), from.size(), to); };
-  const struct { std::string text; const char* part; } cases[] = {
+  const auto changed = [](std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+  };
+  const struct {
+    std::string text;
+    const char* part;
+  } cases[] = {
       {changed(kKalibr, "[752, 480]", "[752]"), "cam.yaml:7: resolution"},
       {changed(kKalibr, "  resolution: [752, 480]\n", ""), "needs resolution"},
       {changed(kKalibr, "radtan", "fov"), "lens model 'fov'"},

@@ -25,7 +25,10 @@ TEST(FileBytes, ErrorsNameTheFile) {
   const TestFolder folder;
   const std::string path = folder.write("a", "12345");
   ::mkfifo((folder / "pipe").c_str(), 0600);
-  const struct { std::string path; ErrorCode code; } cases[] = {
+  const struct {
+    std::string path;
+    ErrorCode code;
+  } cases[] = {
       {folder / "none", ErrorCode::kNotFound}, {path + "/b", ErrorCode::kNotFound}, {folder.path(), ErrorCode::kInvalid},
       {folder / "pipe", ErrorCode::kInvalid},  {path, ErrorCode::kInvalid},
   };

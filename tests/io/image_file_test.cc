@@ -110,10 +110,13 @@ TEST(ImageFile, InterlacedPngComesInOnePiece) {
   {
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
     png_infop info = png_create_info_struct(png);
-    png_set_write_fn(png, &bytes, [](png_structp p, png_bytep data, std::size_t size) {
-      auto* out = static_cast<std::vector<std::uint8_t>*>(png_get_io_ptr(p));
-      out->insert(out->end(), data, data + size);
-    }, nullptr);
+    png_set_write_fn(
+        png, &bytes,
+        [](png_structp p, png_bytep data, std::size_t size) {
+          auto* out = static_cast<std::vector<std::uint8_t>*>(png_get_io_ptr(p));
+          out->insert(out->end(), data, data + size);
+        },
+        nullptr);
     png_set_IHDR(png, info, 8, 8, 8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_ADAM7, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     std::vector<std::vector<std::uint8_t>> rows;
     std::vector<png_bytep> pointers;
@@ -187,10 +190,13 @@ TEST(ImageFile, WrongKindsSayWhatIsExpected) {
   Image<std::uint16_t> depth;
   const std::vector<std::uint16_t> wide(8 * 8 * 3, 1000);
   const std::vector<std::uint8_t> narrow(8 * 8, 100);
-  expect_message(decode_depth(encode_png(narrow.data(), 8, 8, PNG_FORMAT_GRAY), "img", &depth), ErrorCode::kUnsupported, "8-bit grey image, expected 16-bit");
-  expect_message(decode_gray(encode_png(wide.data(), 8, 8, PNG_FORMAT_LINEAR_RGB), "img", &gray), ErrorCode::kUnsupported, "16-bit colour image, expected 8");
+  expect_message(decode_depth(encode_png(narrow.data(), 8, 8, PNG_FORMAT_GRAY), "img", &depth), ErrorCode::kUnsupported,
+                 "8-bit grey image, expected 16-bit");
+  expect_message(decode_gray(encode_png(wide.data(), 8, 8, PNG_FORMAT_LINEAR_RGB), "img", &gray), ErrorCode::kUnsupported,
+                 "16-bit colour image, expected 8");
   expect_message(decode_gray(encode_png(wide.data(), 8, 8, PNG_FORMAT_LINEAR_Y), "img", &gray), ErrorCode::kUnsupported, "16-bit grey");
-  expect_message(decode_depth(encode_png(wide.data(), 8, 8, PNG_FORMAT_LINEAR_RGB), "img", &depth), ErrorCode::kUnsupported, "16-bit colour");
+  expect_message(decode_depth(encode_png(wide.data(), 8, 8, PNG_FORMAT_LINEAR_RGB), "img", &depth), ErrorCode::kUnsupported,
+                 "16-bit colour");
   const TestFolder folder;
   ASSERT_TRUE(write_jpeg(folder / "a.jpg", smooth_color(8, 8)));
   expect_message(decode_depth(bytes_of(folder / "a.jpg"), "img", &depth), ErrorCode::kUnsupported, "cannot hold depth");
@@ -200,7 +206,8 @@ TEST(ImageFile, NotAnImage) {
   Image<std::uint8_t> gray;
   const std::string text = "hello, this is text";
   expect_message(decode_gray({}, "img", &gray), ErrorCode::kCorrupt, "empty");
-  expect_message(decode_gray({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, "img", &gray), ErrorCode::kCorrupt, "neither");
+  expect_message(decode_gray({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, "img", &gray), ErrorCode::kCorrupt,
+                 "neither");
   EXPECT_EQ(ImageReader().read_gray("/no/such/file.jpg", &gray).code(), ErrorCode::kNotFound);
   EXPECT_EQ(decode_image_size({}, "img").status().code(), ErrorCode::kCorrupt);
 }

@@ -61,7 +61,10 @@ TEST(Sequence, TumAsOthersWriteIt) {
 TEST(Sequence, BadListsNameFileAndLine) {
   const TestFolder folder;
   touch(folder, {"a", "b"});
-  const struct { const char* text; const char* part; } cases[] = {
+  const struct {
+    const char* text;
+    const char* part;
+  } cases[] = {
       {"# c\n2.0 a\n1.0 b\n", "rgb.txt:3: stamp '1.0' is not after"},
       {"1.0 a\n1.0 b\n", "rgb.txt:2: stamp '1.0' is not after"},
       {"1.0 a\n2.0 none.png\n", "none.png does not exist"},
@@ -88,7 +91,8 @@ TEST(Sequence, NotASequence) {
 
 TEST(Sequence, SevenScenesInOrderOfNumbers) {
   const TestFolder folder;
-  touch(folder, {"frame-000003.color.png", "frame-000000.color.jpg", "frame-000012.color.jpeg", "frame-000003.depth.png", "frame-x.color.png", "notes.txt"});
+  touch(folder, {"frame-000003.color.png", "frame-000000.color.jpg", "frame-000012.color.jpeg", "frame-000003.depth.png",
+                 "frame-x.color.png", "notes.txt"});
   const auto sequence = read_sequence(folder.path());
   ASSERT_TRUE(sequence.is_ok()) << sequence.status().message();
   EXPECT_EQ(sequence->layout, "7scenes");

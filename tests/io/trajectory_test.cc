@@ -48,7 +48,10 @@ TEST(Trajectory, WrittenLinesReadBack) {
 
 TEST(Trajectory, BadLinesNameFileAndLine) {
   const TestFolder folder;
-  const struct { const char* text; const char* part; } cases[] = {
+  const struct {
+    const char* text;
+    const char* part;
+  } cases[] = {
       {"1 0 0 0 0 0 0 1\n2 0 0 0 0 0 1\n", "t.tum:2: 7 fields"},
       {"1 0 0 0 0 0 0 1 2\n", "t.tum:1: 9 fields"},
       {"x 0 0 0 0 0 0 1\n", "t.tum:1: stamp 'x'"},
@@ -123,7 +126,10 @@ TEST(Trajectory, BadPoseFiles) {
   folder.write("frame-000000.color.png", "x");
   const auto sequence = read_sequence(folder.path());
   ASSERT_TRUE(sequence.is_ok());
-  const struct { const char* text; const char* part; } cases[] = {
+  const struct {
+    const char* text;
+    const char* part;
+  } cases[] = {
       {"1 0 0", "3 numbers"},
       {"", "0 numbers"},
       {"1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 x", "'x' is not a number"},

@@ -56,9 +56,7 @@ TEST(GlobalSearch, MarginFallsWithALookAlike) {
     for (const std::uint64_t i : {1U, 31U, 61U}) {
       const auto [result, error] = search(*map.view, i);
       ASSERT_TRUE(result.best.is_found);
-      if (percent < 100) {
-        EXPECT_LT(error, 0.01) << "the place with more of its landmarks wins";
-      }
+      if (percent < 100) { EXPECT_LT(error, 0.01) << "the place with more of its landmarks wins"; }
       worst_margin = std::min(worst_margin, result.margin);
     }
     EXPECT_LT(worst_margin, last_margin - 0.1) << percent;

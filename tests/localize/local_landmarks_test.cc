@@ -119,8 +119,10 @@ TEST(LocalLandmarks, KeepsTheMostObserved) {
   ASSERT_EQ(kept.size(), static_cast<std::size_t>(kLimit));
   for (const std::int32_t i : in_view) {
     const int observed = map.landmarks()[static_cast<std::size_t>(i)].num_observations;
-    if (kept.count(i) != 0) fewest_kept = std::min(fewest_kept, observed);
-    else most_dropped = std::max(most_dropped, observed);
+    if (kept.count(i) != 0)
+      fewest_kept = std::min(fewest_kept, observed);
+    else
+      most_dropped = std::max(most_dropped, observed);
   }
   EXPECT_GE(fewest_kept, most_dropped);
 }
@@ -128,12 +130,15 @@ TEST(LocalLandmarks, KeepsTheMostObserved) {
 TEST(LocalLandmarks, EveryLimitHolds) {
   const MapView& map = *flat().view;
   const Intrinsics camera = sample_camera(640, 480).color;
-  const auto count = [&](const LocalLandmarksOptions& options) { return LocalLandmarks(map, camera, options).project(looking_in(), 5).size(); };
+  const auto count = [&](const LocalLandmarksOptions& options) {
+    return LocalLandmarks(map, camera, options).project(looking_in(), 5).size();
+  };
   const std::size_t all = count({.max_landmarks = 6000, .max_submaps = 1000});
   EXPECT_EQ(count({.max_landmarks = 1}), 1U);
   EXPECT_EQ(count({.max_landmarks = 6000, .max_submaps = 0}), 0U);
   EXPECT_EQ(count({.max_landmarks = 6000, .max_submaps = 1000, .max_visited = 0}), 0U);
-  const std::size_t near = count({.max_landmarks = 6000, .max_submaps = 3}), half = count({.max_landmarks = 6000, .max_submaps = 1000, .max_visited = 1500});
+  const std::size_t near = count({.max_landmarks = 6000, .max_submaps = 3}),
+                    half = count({.max_landmarks = 6000, .max_submaps = 1000, .max_visited = 1500});
   EXPECT_LT(near, all);
   EXPECT_LT(half, all);
   EXPECT_LT(count({.max_landmarks = 6000, .max_submaps = 1000, .max_visited = 60000, .max_range_m = 4}), all);
@@ -144,7 +149,8 @@ TEST(LocalLandmarks, AMappedViewIsSeenAgain) {
   LocalLandmarks local(world.map(), world.camera().color, {});
   std::vector<std::uint32_t> list(world.map().info().max_keyframe_landmarks);
   std::set<std::uint32_t> projected;
-  for (const auto& landmark : local.project(world.map().keyframe_pose(0), 5)) projected.insert(static_cast<std::uint32_t>(landmark.landmark));
+  for (const auto& landmark : local.project(world.map().keyframe_pose(0), 5))
+    projected.insert(static_cast<std::uint32_t>(landmark.landmark));
   const std::size_t count = world.map().keyframe_landmarks(0, list);
   std::size_t num_seen = 0;
   for (std::size_t i = 0; i < count; ++i) num_seen += projected.count(list[i]);

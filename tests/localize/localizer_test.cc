@@ -91,7 +91,8 @@ TEST_P(LocalizerModes, SaysHowInconsistentTheMapIs) {
   data.pose_sigma_rad = 0.01;
   const testing::MapOnDisk rough(data);
   const FrameBuffer frame = world.frame(10);
-  Localizer a(world.map(), world.camera(), {.orb = {}, .use_tracking = GetParam()}), b(*rough.view, world.camera(), {.orb = {}, .use_tracking = GetParam()});
+  Localizer a(world.map(), world.camera(), {.orb = {}, .use_tracking = GetParam()}),
+      b(*rough.view, world.camera(), {.orb = {}, .use_tracking = GetParam()});
   const Matrix6d added = b.process(frame.view()).covariance - a.process(frame.view()).covariance;
   Vector6d variance = Vector6d::Constant(0.03 * 0.03);
   variance.tail<3>().setConstant(0.01 * 0.01);
@@ -100,7 +101,8 @@ TEST_P(LocalizerModes, SaysHowInconsistentTheMapIs) {
 
 TEST_P(LocalizerModes, SameFramesSameBits) {
   const SampleWorld& world = SampleWorld::get();
-  Localizer a(world.map(), world.camera(), {.orb = {}, .use_tracking = GetParam()}), b(world.map(), world.camera(), {.orb = {}, .use_tracking = GetParam()});
+  Localizer a(world.map(), world.camera(), {.orb = {}, .use_tracking = GetParam()}),
+      b(world.map(), world.camera(), {.orb = {}, .use_tracking = GetParam()});
   for (const std::uint64_t i : query_frames(6)) {
     FrameBuffer frame = world.frame(i);
     testing::add_noise(world.camera(), 4, static_cast<std::uint32_t>(i), &frame);

@@ -10,7 +10,7 @@ namespace camloc {
 namespace {
 
 constexpr std::int64_t kStepNs = 40'000'000;
-const Eigen::Vector3d kVelocity(0.5, -0.2, 0.8);   // camera axes
+const Eigen::Vector3d kVelocity(0.5, -0.2, 0.8);  // camera axes
 const Eigen::Vector3d kTurn(0.3, -0.9, 0.2);
 const Rigid3 kStart{exp_so3({0.4, 1.1, -0.7}), {3, -2, 1.5}};
 
@@ -45,9 +45,7 @@ TEST(MotionModel, ConstantVelocityIsExact) {
   MotionModel model{MotionModelOptions{}};
   Rigid3 T = kStart;
   for (int i = 0; i < 10; ++i) {
-    if (i >= 2) {
-      EXPECT_LT(difference(model.predict(i * kStepNs), T), 1e-12) << i;
-    }
+    if (i >= 2) { EXPECT_LT(difference(model.predict(i * kStepNs), T), 1e-12) << i; }
     model.add_fix(i * kStepNs, T, covariance(), i > 0);
     T = after_steps(T, 1);
   }

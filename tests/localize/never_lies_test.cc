@@ -173,9 +173,7 @@ void expect_noticed(const WrongCamera& wrong, bool use_tracking) {
     ++num_frames;
   }
   EXPECT_TRUE(localizer.calibration().is_suspect) << "focal * " << wrong.focal << ", depth * " << wrong.depth;
-  if (wrong.depth == 1) {
-    EXPECT_NEAR(localizer.calibration().focal_scale, 1 / wrong.focal, 0.01);
-  }
+  if (wrong.depth == 1) { EXPECT_NEAR(localizer.calibration().focal_scale, 1 / wrong.focal, 0.01); }
 }
 
 TEST(NeverLies, FocalLengthOfAnotherCamera) {

@@ -61,7 +61,8 @@ TEST_F(PoseEstimatorTest, HalfOfTheMatchesMayBeWrong) {
   const auto right = estimator_.match_around(observations_, truth_, 12);
   std::vector<Match> matches(right.begin(), right.end());
   testing::Random random(5);
-  for (std::size_t i = 0; i < matches.size(); i += 2) matches[i].landmark = static_cast<std::int32_t>(random.below(world_.map().info().num_landmarks));
+  for (std::size_t i = 0; i < matches.size(); i += 2)
+    matches[i].landmark = static_cast<std::int32_t>(random.below(world_.map().info().num_landmarks));
   const PoseHypothesis hypothesis = estimator_.from_matches(observations_, matches, 1);
   ASSERT_TRUE(hypothesis.is_found);
   EXPECT_LT(pose_error(truth_, hypothesis.T_map_camera).norm(), 0.03);
@@ -72,7 +73,8 @@ TEST_F(PoseEstimatorTest, WrongMatchesFitNothing) {
   std::vector<Match> matches;
   testing::Random random(5);
   for (std::int32_t i = 0; i < 200; ++i) {
-    matches.push_back({.feature = i, .landmark = static_cast<std::int32_t>(random.below(world_.map().info().num_landmarks)), .distance = 40});
+    matches.push_back(
+        {.feature = i, .landmark = static_cast<std::int32_t>(random.below(world_.map().info().num_landmarks)), .distance = 40});
   }
   const PoseHypothesis hypothesis = estimator_.from_matches(observations_, matches, 1);
   EXPECT_TRUE(!hypothesis.is_found || hypothesis.num_inliers < 20) << hypothesis.num_inliers;

@@ -90,14 +90,24 @@ inline constexpr double kNeesLimit = 22.46;  ///< exceeded by 0.1 % of honest po
 
 /// All that a result says, without padding and without stage times: equal bits mean equal results.
 inline std::vector<std::uint64_t> bits_of(const Localization& r) {
-  std::vector<std::uint64_t> bits = {r.sequence,     static_cast<std::uint64_t>(r.stamp_ns), static_cast<std::uint64_t>(r.state),
-                                     static_cast<std::uint64_t>(r.reason), r.has_pose, static_cast<std::uint64_t>(r.quality), r.is_tracked,
-                                     r.num_features, r.num_visible, r.num_matches, r.num_inliers, r.reset_counter};
+  std::vector<std::uint64_t> bits = {r.sequence,
+                                     static_cast<std::uint64_t>(r.stamp_ns),
+                                     static_cast<std::uint64_t>(r.state),
+                                     static_cast<std::uint64_t>(r.reason),
+                                     r.has_pose,
+                                     static_cast<std::uint64_t>(r.quality),
+                                     r.is_tracked,
+                                     r.num_features,
+                                     r.num_visible,
+                                     r.num_matches,
+                                     r.num_inliers,
+                                     r.reset_counter};
   const auto add = [&bits](double value) { bits.push_back(std::bit_cast<std::uint64_t>(value)); };
   for (const double value : r.T_map_camera.rotation.coeffs()) add(value);
   for (const double value : r.T_map_camera.translation) add(value);
   for (const double value : r.covariance.reshaped()) add(value);
-  for (const double value : {r.inlier_ratio, r.spread, r.margin, r.focal_scale, r.depth_agreement, r.map_depth_agreement, r.jump_m}) add(value);
+  for (const double value : {r.inlier_ratio, r.spread, r.margin, r.focal_scale, r.depth_agreement, r.map_depth_agreement, r.jump_m})
+    add(value);
   return bits;
 }
 

@@ -106,7 +106,7 @@ TEST_F(StateMachine, AThinFixIsNotBelievedRightAfterAnAmbiguousOne) {
   const auto right_half = [&](std::uint64_t sequence) { return localizer.process(window(kSeen, sequence, 208, 308).view()); };
 
   ASSERT_EQ(whole(1).state, State::kLocalized);
-  const Localization alone = right_half(37);   // 1.2 s later
+  const Localization alone = right_half(37);  // 1.2 s later
   EXPECT_EQ(alone.state, State::kLocalized);
   EXPECT_LT(alone.num_inliers, VerificationOptions{}.strong_inliers);
 
@@ -222,9 +222,7 @@ TEST_F(StateMachine, CounterGrowsOnlyWithGlobalFixes) {
     const Localization& result = is_dark || is_long_dark ? localizer_.process(black(sequence).view()) : see(sequence / 2, sequence);
     const bool is_global_fix = result.state == State::kLocalized && !result.is_tracked;
     ASSERT_EQ(result.reset_counter, counter + (is_global_fix ? 1 : 0)) << sequence;
-    if (!is_global_fix) {
-      ASSERT_EQ(result.jump_m, 0) << sequence;
-    }
+    if (!is_global_fix) { ASSERT_EQ(result.jump_m, 0) << sequence; }
     counter = result.reset_counter;
   }
   EXPECT_EQ(counter, 2U);
@@ -261,9 +259,7 @@ TEST_F(StateMachine, HalfAMapTellsNoLies) {
     std::filesystem::resize_file(on_disk.path, static_cast<std::uintmax_t>(share * static_cast<double>(bytes)));
     const FrameBuffer frame = world_.frame(20);
     const Localization& result = localizer.process(frame.view());
-    if (result.state == State::kLocalized) {
-      EXPECT_LT(testing::nees(result, sample_pose(20)), testing::kNeesLimit) << share;
-    }
+    if (result.state == State::kLocalized) { EXPECT_LT(testing::nees(result, sample_pose(20)), testing::kNeesLimit) << share; }
     localizer.reset();
   }
   EXPECT_TRUE(on_disk.view->is_damaged());

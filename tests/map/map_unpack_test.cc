@@ -50,8 +50,12 @@ void expect_same_bytes(const MapData& map, const MapWriteOptions& options = {}) 
 TEST(MapUnpack, SameBytes) {
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
-    expect_same_bytes(make_synthetic_map({.num_landmarks = 400, .num_keyframes = 30, .landmarks_per_keyframe = 60,
-                                          .side_m = seed * 2.0, .has_wcs = seed % 2 == 0, .seed = seed}));
+    expect_same_bytes(make_synthetic_map({.num_landmarks = 400,
+                                          .num_keyframes = 30,
+                                          .landmarks_per_keyframe = 60,
+                                          .side_m = seed * 2.0,
+                                          .has_wcs = seed % 2 == 0,
+                                          .seed = seed}));
   }
 }
 
@@ -74,8 +78,8 @@ TEST(MapUnpack, SameBytesOnFacesOfCubesAndFarOut) {
   map.inverted_file.clear();
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   for (const float face : {0.0F, 4.0F, -4.0F, 8.0F, 400.0F, -1024.0F, 5000.0F, -99996.0F, 999996.0F}) {
-    for (const float x : {face, std::nextafter(face, kInfinity), std::nextafter(face, -kInfinity), face + 2e-5F, face - 2e-5F,
-                          face + 1.2345F}) {
+    for (const float x :
+         {face, std::nextafter(face, kInfinity), std::nextafter(face, -kInfinity), face + 2e-5F, face - 2e-5F, face + 1.2345F}) {
       map.landmarks.push_back(pattern);
       map.landmarks.back().position_m = {x, -x, 0.5F * x};
     }

@@ -70,9 +70,7 @@ TEST(MapWriter, LandmarksRoundTrip) {
   ASSERT_EQ(view.info().num_landmarks, 500U);
   const auto index = index_by_descriptor(view);
   ASSERT_EQ(index.size(), 500U);
-  for (const auto& landmark : map.landmarks) {
-    expect_same_landmark(landmark, view, index.at(landmark.descriptors[0].bits), 4.0F / 65535);
-  }
+  for (const auto& landmark : map.landmarks) { expect_same_landmark(landmark, view, index.at(landmark.descriptors[0].bits), 4.0F / 65535); }
 }
 
 TEST(MapWriter, KeyframesFollowTheReorderedLandmarks) {
@@ -86,9 +84,7 @@ TEST(MapWriter, KeyframesFollowTheReorderedLandmarks) {
     EXPECT_LT((view.keyframe_pose(k).translation - map.keyframes[k].T_map_camera.translation).norm(), 1e-5);
     EXPECT_LT(rotation_distance_rad(view.keyframe_pose(k).rotation, map.keyframes[k].T_map_camera.rotation), 1e-5);
     std::vector<std::uint32_t> expected;
-    for (const auto landmark : map.keyframes[k].landmarks) {
-      expected.push_back(index.at(map.landmarks[landmark].descriptors[0].bits));
-    }
+    for (const auto landmark : map.keyframes[k].landmarks) { expected.push_back(index.at(map.landmarks[landmark].descriptors[0].bits)); }
     std::sort(expected.begin(), expected.end());
     std::vector<std::uint32_t> stored(90);
     ASSERT_EQ(view.keyframe_landmarks(k, stored), 90U);
@@ -198,9 +194,18 @@ TEST(MapWriter, RefusesContradictoryData) {
       {"pose not a rotation", [](MapData* m) { m->keyframes[1].T_map_camera.rotation.coeffs() *= 1.1; }},
       {"pose not finite", [](MapData* m) { m->keyframes[1].T_map_camera.translation.x() = kNan; }},
       {"inverted file too short", [](MapData* m) { m->inverted_file.pop_back(); }},
-      {"inverted keyframe beyond", [](MapData* m) { m->inverted_file[0] = {{3, 1}}; }},
-      {"inverted not ascending", [](MapData* m) { m->inverted_file[0] = {{1, 1}, {1, 1}}; }},
-      {"zero weight", [](MapData* m) { m->inverted_file[0] = {{1, 0}}; }},
+      {"inverted keyframe beyond",
+       [](MapData* m) {
+         m->inverted_file[0] = {{3, 1}};
+       }},
+      {"inverted not ascending",
+       [](MapData* m) {
+         m->inverted_file[0] = {{1, 1}, {1, 1}};
+       }},
+      {"zero weight",
+       [](MapData* m) {
+         m->inverted_file[0] = {{1, 0}};
+       }},
       {"long name", [](MapData* m) { m->name.assign(64, 'x'); }},
       {"bad camera", [](MapData* m) { m->camera.color.fx = -1; }},
       {"negative pose sigma", [](MapData* m) { m->pose_sigma_m = -0.1; }},

@@ -26,8 +26,7 @@ MapView open_map(const MapData& map) {
 }
 
 MapData large_map(std::uint32_t seed = 1) {
-  return make_synthetic_map(
-      {.num_landmarks = 2000, .num_keyframes = 20, .landmarks_per_keyframe = 200, .num_words = 128, .seed = seed});
+  return make_synthetic_map({.num_landmarks = 2000, .num_keyframes = 20, .landmarks_per_keyframe = 200, .num_words = 128, .seed = seed});
 }
 
 /// Noisy descriptors of what a keyframe sees.

@@ -154,9 +154,7 @@ inline MapData make_synthetic_map(const SyntheticMapOptions& options = {}) {
   map.pose_sigma_m = 0.004;
   map.pose_sigma_rad = 0.002;
   for (std::uint32_t i = 0; i < options.num_words; ++i) map.words.push_back(random.descriptor());
-  for (std::uint32_t i = 0; i < options.num_landmarks; ++i) {
-    map.landmarks.push_back(synthetic_landmark(options, map.words, &random));
-  }
+  for (std::uint32_t i = 0; i < options.num_landmarks; ++i) { map.landmarks.push_back(synthetic_landmark(options, map.words, &random)); }
   for (std::uint32_t i = 0; i < options.num_keyframes; ++i) {
     MapKeyframe keyframe;
     keyframe.T_map_camera.rotation = random.rotation();

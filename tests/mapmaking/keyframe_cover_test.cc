@@ -72,8 +72,7 @@ TEST(KeyframeCover, HasNoSuperfluousView) {
     for (const std::uint32_t v : cover.views) {
       for (const std::uint32_t item : views[v]) times[item] += v == left_out ? 0 : 1;
     }
-    EXPECT_TRUE(std::any_of(views[left_out].begin(), views[left_out].end(), [&](std::uint32_t i) { return times[i] == 0; }))
-        << left_out;
+    EXPECT_TRUE(std::any_of(views[left_out].begin(), views[left_out].end(), [&](std::uint32_t i) { return times[i] == 0; })) << left_out;
   }
 }
 

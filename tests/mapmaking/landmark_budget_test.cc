@@ -16,9 +16,8 @@ using Views = std::vector<std::vector<ViewObservation>>;
 std::vector<int> kept_per_view(const Views& views, const std::vector<std::uint32_t>& kept) {
   std::vector<int> counts;
   for (const auto& view : views) {
-    counts.push_back(static_cast<int>(std::count_if(view.begin(), view.end(), [&](const ViewObservation& o) {
-      return std::binary_search(kept.begin(), kept.end(), o.landmark);
-    })));
+    counts.push_back(static_cast<int>(std::count_if(
+        view.begin(), view.end(), [&](const ViewObservation& o) { return std::binary_search(kept.begin(), kept.end(), o.landmark); })));
   }
   return counts;
 }
@@ -56,8 +55,7 @@ TEST(LandmarkBudget, GivesEachViewItsShare) {
 
 TEST(LandmarkBudget, SpreadsOverTheImage) {
   Views views(1);
-  for (std::uint32_t i = 0; i < 200; ++i)
-    views[0].push_back({i, static_cast<std::uint8_t>(i < 190 ? 0 : 5)});  // crowded and empty cells
+  for (std::uint32_t i = 0; i < 200; ++i) views[0].push_back({i, static_cast<std::uint8_t>(i < 190 ? 0 : 5)});  // crowded and empty cells
   const auto kept = select_landmarks(views, 200, plain(20));
   EXPECT_EQ(std::count_if(kept.begin(), kept.end(), [](std::uint32_t i) { return i >= 190; }), 10);
 }

@@ -41,8 +41,7 @@ struct Point {
 std::vector<Point> random_points(int count, std::mt19937_64& random) {
   std::uniform_real_distribution<double> x(-0.9, 0.9), y(-0.6, 0.6), z(1.8, 3.0);
   std::vector<Point> points;
-  for (int i = 0; i < count; ++i)
-    points.push_back({{x(random), y(random), z(random)}, {{random(), random(), random(), random()}}});
+  for (int i = 0; i < count; ++i) points.push_back({{x(random), y(random), z(random)}, {{random(), random(), random(), random()}}});
   return points;
 }
 

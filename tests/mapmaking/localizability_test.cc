@@ -208,7 +208,8 @@ double measured_position_sigma_m(const MapData& map, const Rigid3& T_map_camera,
       const double depth = p.z() + gaussian(&random) * map.camera.depth_noise.sigma_m(p.z());
       pairs.add(static_cast<float>(u), static_cast<float>(v), P.x(), P.y(), P.z(), static_cast<float>(depth), 1.0F, 0.0F, 0, 0);
     }
-    const Eigen::Vector3d error = refine_pose(pairs, T_map_camera, focal_px, options, nullptr).T_map_camera.translation - T_map_camera.translation;
+    const Eigen::Vector3d error =
+        refine_pose(pairs, T_map_camera, focal_px, options, nullptr).T_map_camera.translation - T_map_camera.translation;
     covariance += error * error.transpose() / num_trials;
   }
   return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]);

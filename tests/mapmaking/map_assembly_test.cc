@@ -70,8 +70,7 @@ TEST(MapAssembly, KeepsWhatIsWorthMost) {
   ASSERT_TRUE(map.is_ok()) << map.status().message();
   EXPECT_LE(serialize_map(map.value()).value().size(), options.max_bytes);
   const auto& landmarks = map.value().landmarks;
-  const auto num_worthy =
-      std::count_if(landmarks.begin(), landmarks.end(), [](const MapLandmark& l) { return l.num_observations == 40; });
+  const auto num_worthy = std::count_if(landmarks.begin(), landmarks.end(), [](const MapLandmark& l) { return l.num_observations == 40; });
   EXPECT_GT(static_cast<double>(num_worthy), 0.95 * static_cast<double>(landmarks.size()));
 }
 

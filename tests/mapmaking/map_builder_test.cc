@@ -45,8 +45,7 @@ class Wall {
     for (int i = 0; i < 4000; ++i) {
       const unsigned x0 = below(kSide), y0 = below(kSide), w = 6 + below(30), h = 6 + below(30);
       const auto value = static_cast<std::uint8_t>(below(256));
-      for (unsigned y = y0; y < std::min(y0 + h, kSide); ++y)
-        std::fill_n(grey_.begin() + y * kSide + x0, std::min(w, kSide - x0), value);
+      for (unsigned y = y0; y < std::min(y0 + h, kSide); ++y) std::fill_n(grey_.begin() + y * kSide + x0, std::min(w, kSide - x0), value);
     }
   }
   [[nodiscard]] double at(double x_m, double y_m) const {
@@ -83,8 +82,7 @@ FrameBuffer render(const Wall& wall, const RgbdCamera& camera, const Rigid3& T_m
 std::vector<Rigid3> walk() {
   std::vector<Rigid3> poses;
   for (int i = 0; i < 12; ++i)
-    poses.push_back(
-        {exp_so3({0.01 * (i % 3), 0.02 * (i % 5) - 0.04, 0.01 * i}), {0.09 * i - 0.5, 0.03 * (i % 4), 0.02 * (i % 3)}});
+    poses.push_back({exp_so3({0.01 * (i % 3), 0.02 * (i % 5) - 0.04, 0.01 * i}), {0.09 * i - 0.5, 0.03 * (i % 4), 0.02 * (i % 3)}});
   return poses;
 }
 

@@ -89,8 +89,7 @@ TEST(Distances, ShowACollapsedMapByItsVolumeAndCoverage) {
   CloudIndex cloud(flat.cloud_m);
   std::vector<Eigen::Vector3d> collapsed;  // all on one corner of the room: each landmark is on the cloud
   for (const auto& p : flat.landmarks_m) collapsed.push_back(0.001 * p);
-  const CloudDistances good = measure_distances(flat.landmarks_m, {}, &cloud, {}),
-                       bad = measure_distances(collapsed, {}, &cloud, {});
+  const CloudDistances good = measure_distances(flat.landmarks_m, {}, &cloud, {}), bad = measure_distances(collapsed, {}, &cloud, {});
   EXPECT_LT(bad.point.mean_m, 0.03);
   EXPECT_LT(bad.volume_ratio(), 1e-4);
   EXPECT_NEAR(good.volume_ratio(), 1, 0.1);

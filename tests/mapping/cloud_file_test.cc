@@ -115,8 +115,8 @@ TEST(CloudFile, RefusesBadPly) {
 std::string pcd(const std::string& data, const std::string& payload, int points = 3) {
   return "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS rgb x y z\nSIZE 1 4 8 4\nTYPE U F F F\nCOUNT 3 1 1 "
          "1\nWIDTH " +
-         std::to_string(points) + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(points) + "\nDATA " + data +
-         "\n" + payload;
+         std::to_string(points) + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + std::to_string(points) + "\nDATA " + data + "\n" +
+         payload;
 }
 
 std::string pcd_records() {

@@ -18,8 +18,8 @@ namespace {
 using testing::looking;
 using testing::Random;
 
-constexpr double kWall = 3.0;          // the plane x = 3 of the world is all that is seen
-constexpr double kUnitsPerMetre = 4.0; // of the model
+constexpr double kWall = 3.0;           // the plane x = 3 of the world is all that is seen
+constexpr double kUnitsPerMetre = 4.0;  // of the model
 constexpr int kNumFrames = 6;
 
 class ColmapPosesTest : public ::testing::Test {
@@ -39,7 +39,8 @@ class ColmapPosesTest : public ::testing::Test {
   void write_recording() {
     std::string rgb, depth;
     for (int i = 0; i < kNumFrames; ++i) {
-      const std::string stamp = std::to_string(i + 1) + ".000000", color_name = "rgb/" + stamp + ".png", depth_name = "depth/" + stamp + ".png";
+      const std::string stamp = std::to_string(i + 1) + ".000000", color_name = "rgb/" + stamp + ".png",
+                        depth_name = "depth/" + stamp + ".png";
       std::filesystem::create_directories(folder_.path() / "rgb");
       std::filesystem::create_directories(folder_.path() / "depth");
       Image<std::uint8_t> gray;
@@ -48,7 +49,8 @@ class ColmapPosesTest : public ::testing::Test {
       Image<std::uint16_t> image;
       image.resize(64, 48);
       for (int v = 0; v < 48; ++v) {
-        for (int u = 0; u < 64; ++u) image.at(u, v) = static_cast<std::uint16_t>(std::lround(1000 * depth_at(poses_[static_cast<std::size_t>(i)], {u, v})));
+        for (int u = 0; u < 64; ++u)
+          image.at(u, v) = static_cast<std::uint16_t>(std::lround(1000 * depth_at(poses_[static_cast<std::size_t>(i)], {u, v})));
       }
       ASSERT_TRUE(write_depth_png(folder_.file(depth_name), image).is_ok());
       rgb += stamp + " " + color_name + "\n";
@@ -71,7 +73,8 @@ class ColmapPosesTest : public ::testing::Test {
         const Eigen::Vector2d pixel(random.uniform(2, 61), random.uniform(2, 45));
         const double z = depth_at(poses_[i], pixel);
         const Eigen::Vector3d p_world = poses_[i] * (z * camera_.color.undistort(pixel).homogeneous());
-        image.observations.push_back({pixel.x() + kColmapPixelShift, pixel.y() + kColmapPixelShift, static_cast<std::uint32_t>(model.points.size())});
+        image.observations.push_back(
+            {pixel.x() + kColmapPixelShift, pixel.y() + kColmapPixelShift, static_cast<std::uint32_t>(model.points.size())});
         model.points.push_back({model.points.size() + 1, kUnitsPerMetre * (T_model_world * p_world), {}});
       }
       model.images.push_back(std::move(image));

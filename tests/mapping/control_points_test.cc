@@ -40,14 +40,18 @@ TEST(ControlPoints, NamesMayHoldBlanksAndHashes) {
 }
 
 TEST(ControlPoints, TitlesGiveTheOrderOfColumns) {
-  const std::vector<ControlPoint> points = points_of("Point,Northing,Easting,Code,Elevation,Sigma_m\nA,5432109.876,456789.123,WALL,12.5,0.004\n");
+  const std::vector<ControlPoint> points =
+      points_of("Point,Northing,Easting,Code,Elevation,Sigma_m\nA,5432109.876,456789.123,WALL,12.5,0.004\n");
   ASSERT_EQ(points.size(), 1U);
   EXPECT_EQ(points[0].p_wcs, Eigen::Vector3d(456789.123, 5432109.876, 12.5));  // to the last bit
   EXPECT_EQ(points[0].sigma_m, 0.004);
 }
 
 TEST(ControlPoints, ErrorsNameFileLineAndField) {
-  const struct { const char* text; const char* part; } cases[] = {
+  const struct {
+    const char* text;
+    const char* part;
+  } cases[] = {
       {"", "site.csv: no control point"},
       {"# nothing\n", "site.csv: no control point"},
       {"name,x,y,z\n", "site.csv: no control point"},
@@ -87,7 +91,10 @@ TEST(ControlObservations, ThreeKinds) {
 }
 
 TEST(ControlObservations, ErrorsNameFileLineAndField) {
-  const struct { const char* text; const char* part; } cases[] = {
+  const struct {
+    const char* text;
+    const char* part;
+  } cases[] = {
       {"", "seen.txt: no observation"},
       {"A 1 2 3\n", "seen.txt:1: '1' is not 'map', 'landmark' or 'pixel'"},
       {"A\n", "'' is not 'map'"},
@@ -136,7 +143,8 @@ TEST(PixelMeasurement, DepthAndRayOfAFlatWall) {
 }
 
 TEST(PixelMeasurement, OnlyOfTheFrameAtHand) {
-  const auto observations = parse_control_observations("A pixel 3 100 100\nA pixel 4 100 100\nB map 1 2 3\nC pixel 3 700 100\n", "seen.txt");
+  const auto observations =
+      parse_control_observations("A pixel 3 100 100\nA pixel 4 100 100\nB map 1 2 3\nC pixel 3 700 100\n", "seen.txt");
   ASSERT_TRUE(observations.is_ok());
   const RgbdCamera camera = sighting_camera();
   FrameBuffer frame;
@@ -207,9 +215,8 @@ TEST(ResolveObservations, TakesWhatTheSourcesGiveAndNamesTheRest) {
 }
 
 TEST(AverageSightings, WeighsAndShowsTheScatter) {
-  const std::vector<PointSighting> sightings = {{"A", {1, 0, 0}, 0.01, "first"},
-                                                {"B", {9, 9, 9}, 0.02, "alone"},
-                                                {"A", {1.02, 0, 0}, 0.02, "second"}};
+  const std::vector<PointSighting> sightings = {
+      {"A", {1, 0, 0}, 0.01, "first"}, {"B", {9, 9, 9}, 0.02, "alone"}, {"A", {1.02, 0, 0}, 0.02, "second"}};
   const std::vector<ObservedPoint> points = average_sightings(sightings);
   ASSERT_EQ(points.size(), 2U);
   EXPECT_EQ(points[0].name, "A");

@@ -87,8 +87,7 @@ TEST(DenseCloud, FusesARecordingWhosePosesAreOfTheDepthCamera) {
     const Rigid3 T_world_depth{exp_so3({0.0, 0.05 * i, 0.0}), {0.1 * i, 0, 0}};
     char name[64];
     std::snprintf(name, sizeof name, "/frame-%06d", i);
-    ASSERT_TRUE(write_depth_png(folder.path() + name + ".depth.png", see(camera, T_world_depth * camera.T_color_depth.inverse()))
-                    .is_ok());
+    ASSERT_TRUE(write_depth_png(folder.path() + name + ".depth.png", see(camera, T_world_depth * camera.T_color_depth.inverse())).is_ok());
     Image<std::uint8_t> gray;
     gray.resize(160, 120);
     ASSERT_TRUE(write_png(folder.path() + name + ".color.png", gray).is_ok());
@@ -105,8 +104,8 @@ TEST(DenseCloud, FusesARecordingWhosePosesAreOfTheDepthCamera) {
   DenseCloudOptions options;
   options.min_points = 1;
   std::uint64_t num_calls = 0;
-  const auto cloud = fuse_dense_cloud(frames.value(), camera, options,
-                                      [&](std::uint64_t, std::uint64_t total) { return ++num_calls, total == 4; });
+  const auto cloud =
+      fuse_dense_cloud(frames.value(), camera, options, [&](std::uint64_t, std::uint64_t total) { return ++num_calls, total == 4; });
   ASSERT_TRUE(cloud.is_ok()) << cloud.status().message();
   EXPECT_EQ(num_calls, 4U);
   EXPECT_GT(cloud.value().points_m.size(), 3000U);

@@ -29,9 +29,7 @@ const ScannedFlat& flat() {
   return scanned;
 }
 
-Rigid3 camera_in_flat(int i) {
-  return looking({1.5 + 0.8 * i, 2 + 0.1 * (i % 3), 1.5}, {std::cos(0.9 * i), std::sin(0.9 * i), 0});
-}
+Rigid3 camera_in_flat(int i) { return looking({1.5 + 0.8 * i, 2 + 0.1 * (i % 3), 1.5}, {std::cos(0.9 * i), std::sin(0.9 * i), 0}); }
 
 /// Landmarks of the flat, and keyframes in it, moved by T_map_flat and multiplied by `scale`.
 MapData map_of_flat(const Rigid3& T_map_flat, double scale = 1) {
@@ -87,8 +85,7 @@ class EvalCommand : public ::testing::Test {
     std::string text = "# name, map, cloud\n";
     const Eigen::Vector3d corners[] = {{0, 0, 0}, {8, 0, 0}, {8, 5, 0}, {0, 5, 2.6}, {11.2, 4, 2.6}};
     for (int i = 0; i < 5; ++i) {
-      const Eigen::Vector3d map = T_map_flat * corners[i],
-                            cloud = T_cloud_flat * corners[i] + Eigen::Vector3d(0, 0, i == wrong ? 1 : 0);
+      const Eigen::Vector3d map = T_map_flat * corners[i], cloud = T_cloud_flat * corners[i] + Eigen::Vector3d(0, 0, i == wrong ? 1 : 0);
       char line[200];
       std::snprintf(line, sizeof line, "P%d %.4f %.4f %.4f %.4f %.4f %.4f\n", i, map.x(), map.y(), map.z(), cloud.x(), cloud.y(),
                     cloud.z());
@@ -177,8 +174,8 @@ TEST_F(EvalCommand, AlignsByTwoTrajectories) {
     in_map += format_tum_line(i * 1000000000LL, camera_in_flat(i)) + "\n";
     in_cloud += format_tum_line(i * 1000000000LL, T_cloud_map * camera_in_flat(i)) + "\n";
   }
-  const auto json = eval_json(
-      {"--trajectory", folder_.write("map.tum", in_map), "--reference-trajectory", folder_.write("cloud.tum", in_cloud)});
+  const auto json =
+      eval_json({"--trajectory", folder_.write("map.tum", in_map), "--reference-trajectory", folder_.write("cloud.tum", in_cloud)});
   EXPECT_EQ(json["alignment"]["start"], "trajectory");
   EXPECT_LT(error_m(json, T_cloud_map), 0.01);
   EXPECT_NEAR(json["scale"]["camera_positions"].get<double>(), 1, 1e-6);

@@ -3,8 +3,6 @@
 //
 // What is exported says the same as the map: PLY through a reader of its own, the COLMAP model by projecting its points with
 // COLMAP's rules, the trajectory through the reader for recordings.
-#include "tools/mapping/colmap/map_export.h"
-
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -13,6 +11,7 @@
 
 #include "core/io/sequence.h"
 #include "tests/map/room_map.h"
+#include "tools/mapping/colmap/map_export.h"
 #include "tools/mapping/site/map_up.h"
 
 namespace camloc::map_tool {

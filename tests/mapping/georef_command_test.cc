@@ -139,14 +139,22 @@ TEST(GeorefCommand, NamesWhatHasNoPartner) {
 
 TEST(GeorefCommand, BadInputIsAUsageError) {
   const Site site;
-  const struct { std::vector<std::string> arguments; int exit_code; const char* part; } cases[] = {
+  const struct {
+    std::vector<std::string> arguments;
+    int exit_code;
+    const char* part;
+  } cases[] = {
       {{"georef", site.map_path, "--points", site.points_path}, 2, ""},
       {{"georef", site.map_path, "--points", site.folder / "none", "--observed", site.observed_path}, 1, "none"},
       {{"georef", site.folder / "none.cmap", "--points", site.points_path, "--observed", site.observed_path}, 1, "none.cmap"},
       {{"georef", site.map_path, "--points", site.observed_path, "--observed", site.observed_path}, 2, "observed.csv:1: x 'map'"},
       {{"georef", site.map_path, "--points", site.points_path, "--observed", site.folder.write("p", "P1 pixel 3 1 1\n")}, 2, "--sequence"},
-      {{"georef", site.map_path, "--points", site.points_path, "--observed", site.observed_path, "--out", site.folder / "no/where"}, 2, "--out"},
-      {{"georef", site.map_path, "--points", site.points_path, "--observed", site.folder.write("q", "P1 map 1 1 1\n")}, 1, "1 common control point;"},
+      {{"georef", site.map_path, "--points", site.points_path, "--observed", site.observed_path, "--out", site.folder / "no/where"},
+       2,
+       "--out"},
+      {{"georef", site.map_path, "--points", site.points_path, "--observed", site.folder.write("q", "P1 map 1 1 1\n")},
+       1,
+       "1 common control point;"},
   };
   for (const auto& one : cases) {
     const CommandOutput output = run_command(add_georef_command, one.arguments);
@@ -191,7 +199,10 @@ TEST(GeorefCommand, PixelsOfARecordingBecomePointsOfTheMap) {
   const Recording recording;
   const TemporaryFolder folder;
   std::string points, observed;
-  const struct { std::uint64_t frame; int u, v; } pixels[] = {{10, 80, 60}, {20, 240, 70}, {20, 60, 180}, {31, 160, 120}, {43, 250, 190}, {55, 100, 100}};
+  const struct {
+    std::uint64_t frame;
+    int u, v;
+  } pixels[] = {{10, 80, 60}, {20, 240, 70}, {20, 60, 180}, {31, 160, 120}, {43, 250, 190}, {55, 100, 100}};
   int index = 0;
   for (const auto& pixel : pixels) {
     const std::string name = "P" + std::to_string(index++);
@@ -200,8 +211,12 @@ TEST(GeorefCommand, PixelsOfARecordingBecomePointsOfTheMap) {
   }
   observed += "P0 pixel 1000 10 10\nP1 pixel 20 319 239000\n";
   const std::string map_path = SampleWorld::get().map().info().path, out_path = folder / "out.cmap";
-  std::vector<std::string> arguments = {"georef", map_path, "--points", folder.write("p", points), "--observed", folder.write("bad", observed),
-                                        "--sequence", recording.folder.path(), "--camera", recording.camera_path, "--out", out_path};
+  std::vector<std::string> arguments = {"georef",     map_path,
+                                        "--points",   folder.write("p", points),
+                                        "--observed", folder.write("bad", observed),
+                                        "--sequence", recording.folder.path(),
+                                        "--camera",   recording.camera_path,
+                                        "--out",      out_path};
   EXPECT_EQ(run_command(add_georef_command, arguments).exit_code, 2);  // no image is 239000 pixels high
   observed.resize(observed.rfind("P1"));
   arguments[5] = folder.write("o", observed);
@@ -221,7 +236,8 @@ TEST(GeorefCommand, FramesOfAnotherPlaceAreLeftOut) {
   std::ofstream(site.observed_path, std::ios::app) << "P1,pixel,10,100,100\n";
   const CommandOutput output = site.georef({"--sequence", recording.folder.path(), "--camera", recording.camera_path, "--dry-run"});
   EXPECT_EQ(output.exit_code, 0) << output.err;
-  EXPECT_NE(output.out.find("P1, pixel (100.0, 100.0) of frame 10: the frame is not localized in the map: "), std::string::npos) << output.out;
+  EXPECT_NE(output.out.find("P1, pixel (100.0, 100.0) of frame 10: the frame is not localized in the map: "), std::string::npos)
+      << output.out;
 }
 
 }  // namespace

@@ -160,7 +160,10 @@ TEST(GeorefFit, ThreeGoodPointsAreTakenWithAWarning) {
 }
 
 TEST(GeorefFit, SwappedAxes) {
-  const struct { int a, b; const char* part; } cases[] = {{0, 1, "x and y swapped"}, {0, 2, "x and z swapped"}, {1, 2, "y and z swapped"}};
+  const struct {
+    int a, b;
+    const char* part;
+  } cases[] = {{0, 1, "x and y swapped"}, {0, 2, "x and z swapped"}, {1, 2, "y and z swapped"}};
   for (const auto& one : cases) {
     Survey survey = make_survey(7);
     for (GeorefPoint& point : survey.points) std::swap(point.pair.p_a[one.a], point.pair.p_a[one.b]);
@@ -204,7 +207,10 @@ TEST(GeorefFit, WarnsWhereZIsNotUp) {
 }
 
 TEST(GeorefFit, NamesTheUnit) {
-  const struct { double scale; const char* part; } cases[] = {{1000, "millimetres"}, {100, "centimetres"}, {3.28084, "feet"}, {2, "divided by 2"}};
+  const struct {
+    double scale;
+    const char* part;
+  } cases[] = {{1000, "millimetres"}, {100, "centimetres"}, {3.28084, "feet"}, {2, "divided by 2"}};
   for (const auto& one : cases) {
     Survey survey = make_survey(6);
     for (GeorefPoint& point : survey.points) point.pair.p_a *= one.scale;
@@ -257,7 +263,8 @@ TEST(GeorefFit, RefusesWhenTheRestIsALine) {
 
 TEST(MatchPoints, InTheOrderOfThePointsWithBothSigmas) {
   const std::vector<ControlPoint> points = {{"A", {1, 2, 3}, 0.03, 1}, {"B", {4, 5, 6}, 0.01, 2}, {"C", {7, 8, 9}, 0.01, 3}};
-  const std::vector<ObservedPoint> observed = {{"C", {1, 1, 1}, 0.01, 0, 1, ""}, {"X", {0, 0, 0}, 0.01, 0, 1, ""}, {"A", {2, 2, 2}, 0.04, 0.1, 3, ""}};
+  const std::vector<ObservedPoint> observed = {
+      {"C", {1, 1, 1}, 0.01, 0, 1, ""}, {"X", {0, 0, 0}, 0.01, 0, 1, ""}, {"A", {2, 2, 2}, 0.04, 0.1, 3, ""}};
   const std::vector<GeorefPoint> matched = match_points(points, observed);
   ASSERT_EQ(matched.size(), 2U);
   EXPECT_EQ(matched[0].name, "A");

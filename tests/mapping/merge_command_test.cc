@@ -67,8 +67,7 @@ TEST_F(MergeCommandTest, WritesAMapAndSaysWhatCameOfIt) {
 }
 
 TEST_F(MergeCommandTest, MayWriteOverTheFirstMapWithinABudget) {
-  ASSERT_EQ(run({"merge", file("a.cmap"), file("b.cmap"), "--out", file("a.cmap"), "--max-bytes", "60KB", "--json"}), 0)
-      << error_;
+  ASSERT_EQ(run({"merge", file("a.cmap"), file("b.cmap"), "--out", file("a.cmap"), "--max-bytes", "60KB", "--json"}), 0) << error_;
   EXPECT_LE(std::filesystem::file_size(file("a.cmap")), 61440U);
   EXPECT_NE(out_.find("\"localized_keyframes\""), std::string::npos);
   EXPECT_TRUE(MapView::open(file("a.cmap")).is_ok());
@@ -116,8 +115,7 @@ TEST_F(MergeCommandTest, BuildExtendsAMapByAnotherRecordingOfTheRoom) {
   EXPECT_EQ(run(with({"--frames", "2:150:5", "--extend", file("a.cmap"), "--out", file("k.cmap")})), 2);
   EXPECT_NE(error_.find("no place in common"), std::string::npos);
   EXPECT_EQ(testing::read_bytes(file("k.cmap")), before);
-  ASSERT_EQ(run(with({"--frames", "2:150:5", "--extend", file("k.cmap"), "--max-bytes", "200KB", "--out", file("k.cmap")})), 0)
-      << error_;
+  ASSERT_EQ(run(with({"--frames", "2:150:5", "--extend", file("k.cmap"), "--max-bytes", "200KB", "--out", file("k.cmap")})), 0) << error_;
   EXPECT_NE(out_.find("keyframes of the second map"), std::string::npos);
   EXPECT_LE(std::filesystem::file_size(file("k.cmap")), 204800U);
   EXPECT_TRUE(MapView::open(file("k.cmap")).is_ok());

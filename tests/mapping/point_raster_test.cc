@@ -39,8 +39,7 @@ std::vector<Eigen::Vector3d> room(double yaw_rad, const Eigen::Vector3d& center)
   std::uniform_real_distribution<double> unit(-0.5, 0.5);
   const Eigen::AngleAxisd turn(yaw_rad, Eigen::Vector3d::UnitZ());
   std::vector<Eigen::Vector3d> points;
-  for (int i = 0; i < 5000; ++i)
-    points.push_back(center + turn * Eigen::Vector3d(10 * unit(random), 4 * unit(random), 2 * unit(random)));
+  for (int i = 0; i < 5000; ++i) points.push_back(center + turn * Eigen::Vector3d(10 * unit(random), 4 * unit(random), 2 * unit(random)));
   return points;
 }
 

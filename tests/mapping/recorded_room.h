@@ -19,7 +19,7 @@
 namespace camloc::map_tool {
 
 constexpr int kRoomWidth = 320, kRoomHeight = 240;
-constexpr std::uint64_t kRoomStride = 2;   ///< frames of the path between two of the recording
+constexpr std::uint64_t kRoomStride = 2;  ///< frames of the path between two of the recording
 
 inline RgbdCamera room_camera() { return sample_camera(kRoomWidth, kRoomHeight); }
 

@@ -41,8 +41,7 @@ struct ScannedFlat {
     }
   }
 
-  void add_sample(const Eigen::Vector3d& low, const Eigen::Vector3d& size, int axis, double side, double a, double b,
-                  Random* random) {
+  void add_sample(const Eigen::Vector3d& low, const Eigen::Vector3d& size, int axis, double side, double a, double b, Random* random) {
     Eigen::Vector3d p = low;
     p[axis] += side * size[axis];
     p[(axis + 1) % 3] += a;

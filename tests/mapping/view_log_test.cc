@@ -59,7 +59,8 @@ void expect_equal(const LoggedView& a, const LoggedView& b) {
   EXPECT_EQ(a.surface_m, b.surface_m);
   EXPECT_EQ(a.thumbnail.grey, b.thumbnail.grey);
   EXPECT_EQ(a.thumbnail.depth, b.thumbnail.depth);
-  EXPECT_EQ(std::tie(a.thumbnail.width, a.thumbnail.height, a.thumbnail.cell_px), std::tie(b.thumbnail.width, b.thumbnail.height, b.thumbnail.cell_px));
+  EXPECT_EQ(std::tie(a.thumbnail.width, a.thumbnail.height, a.thumbnail.cell_px),
+            std::tie(b.thumbnail.width, b.thumbnail.height, b.thumbnail.cell_px));
   ASSERT_EQ(a.view.patches.size(), b.view.patches.size());
   for (std::size_t i = 0; i < a.view.patches.size(); ++i) EXPECT_EQ(a.view.patches[i].pixels, b.view.patches[i].pixels);
   for (std::size_t i = 0; i < a.view.size(); ++i) {
@@ -140,7 +141,7 @@ TEST(ViewLog, ASizeFromADamagedHeaderIsNotBelieved) {
   write_log(folder / "log", views);
   std::string damaged;
   for (const std::uint8_t byte : bytes_of(folder / "log")) damaged.push_back(static_cast<char>(byte));
-  for (std::size_t at = 64 + 16; at < 64 + 24; ++at) damaged[at] = '\xFF';   // both counts of the first record
+  for (std::size_t at = 64 + 16; at < 64 + 24; ++at) damaged[at] = '\xFF';  // both counts of the first record
   folder.write("damaged", damaged);
   EXPECT_EQ(num_readable(folder / "damaged", views), 0U);
 }

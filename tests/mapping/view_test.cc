@@ -86,11 +86,13 @@ TEST_F(ViewTest, CoverageShowsWhereItIsWeak) {
 
   // Keyframes go from x = -1 to the right of the room.
   const ColorImage left = draw_map(picture_of(map, {0}), MapPanel::kCoverage, 1600);
-  const Blob weak = find_color(left, color_of(FixOutlook::kScanAgain), kMapPx), good = find_color(left, color_of(FixOutlook::kLikely), kMapPx);
+  const Blob weak = find_color(left, color_of(FixOutlook::kScanAgain), kMapPx),
+             good = find_color(left, color_of(FixOutlook::kLikely), kMapPx);
   EXPECT_GT(weak.count, 30);
   EXPECT_LT(weak.mean.x() + 50, good.mean.x());
   const ColorImage right = draw_map(picture_of(map, {8}, FixOutlook::kLookAlike), MapPanel::kCoverage, 1600);
-  EXPECT_GT(find_color(right, color_of(FixOutlook::kLookAlike), kMapPx).mean.x(), find_color(right, color_of(FixOutlook::kLikely), kMapPx).mean.x() + 50);
+  EXPECT_GT(find_color(right, color_of(FixOutlook::kLookAlike), kMapPx).mean.x(),
+            find_color(right, color_of(FixOutlook::kLikely), kMapPx).mean.x() + 50);
 }
 
 TEST_F(ViewTest, AWedgeOpensTheWayTheCameraLooks) {
@@ -103,8 +105,8 @@ TEST_F(ViewTest, AWedgeOpensTheWayTheCameraLooks) {
   aside.weak.clear();
   const Blob right = find_color(draw_map(ahead, MapPanel::kCoverage, 1600), color_of(FixOutlook::kScanAgain), kMapPx);
   const Blob up = find_color(draw_map(aside, MapPanel::kCoverage, 1600), color_of(FixOutlook::kScanAgain), kMapPx);
-  EXPECT_GT(right.mean.x(), up.mean.x() + 5);   // x goes to the right
-  EXPECT_LT(up.mean.y(), right.mean.y() - 5);   // y goes up
+  EXPECT_GT(right.mean.x(), up.mean.x() + 5);  // x goes to the right
+  EXPECT_LT(up.mean.y(), right.mean.y() - 5);  // y goes up
 }
 
 TEST_F(ViewTest, ColorsCanBeToldApartInGrey) {
@@ -182,7 +184,8 @@ TEST_F(ViewTest, PositionsAreOfTheSiteWhereTheMapHasOne) {
 
 TEST_F(ViewTest, CommandsWriteTheirFilesOrSayWhyNot) {
   open(make_room_map());
-  const std::string map = folder_.file("m.cmap"), png = folder_.file("m.png"), ply = folder_.file("m.ply"), tum = folder_.file("m.tum"), model = folder_.file("model");
+  const std::string map = folder_.file("m.cmap"), png = folder_.file("m.png"), ply = folder_.file("m.ply"), tum = folder_.file("m.tum"),
+                    model = folder_.file("model");
   EXPECT_EQ(run({"camloc-map", "export", map.c_str(), "--ply", ply.c_str(), "--tum", tum.c_str(), "--colmap", model.c_str()}), 0);
   EXPECT_TRUE(read_tum_trajectory(tum).is_ok());
   EXPECT_TRUE(read_colmap_model(model).is_ok());

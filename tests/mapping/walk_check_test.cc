@@ -111,7 +111,7 @@ TEST(WalkCheck, ACameraThatStandsStillIsRefused) {
   EXPECT_NE(verdict.message().find("stood still"), std::string::npos);
   EXPECT_NE(verdict.message().find("2.0 cm"), std::string::npos) << verdict.message();
   EXPECT_TRUE(check.verdict(moving(0.1)).is_ok());
-  EXPECT_TRUE(check.verdict(moving(0, 0.2)).is_ok());   // only turned
+  EXPECT_TRUE(check.verdict(moving(0, 0.2)).is_ok());  // only turned
 }
 
 TEST(WalkCheck, LostAndThenSomewhereElseIsNotStandingStill) {
@@ -141,7 +141,7 @@ TEST(WalkCheck, WeakSpotsAreStretchesWithAdvice) {
   for (std::uint64_t i = 0; i < 120; ++i) {
     const bool is_bare = i >= 20 && i < 30, is_dark = i >= 40 && i < 50, is_lost = i >= 60 && i < 72, is_thin = i >= 90 && i < 95;
     check.see_view(i, stamp_ns(i), is_bare ? 40 : 400, is_dark ? 10 : 300);
-    check.see_report(is_lost && i != 65 ? lost : tracked(is_thin ? 35 : 200));   // one good view inside
+    check.see_report(is_lost && i != 65 ? lost : tracked(is_thin ? 35 : 200));  // one good view inside
   }
   const auto spots = check.weak_spots();
   ASSERT_EQ(spots.size(), 4U);

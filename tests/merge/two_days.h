@@ -87,8 +87,7 @@ inline MapData make_day(const Corridor& corridor, const DayOptions& options) {
   int step = 0;
   for (double x = options.first_m; x <= options.last_m; x += 0.5, ++step) {
     const double yaw = (step % 2 == 0 ? 1.57 : -1.57) + random.uniform(-0.4, 0.4);
-    const Rigid3 T_world_camera =
-        looking({x, random.uniform(-0.5, 0.5), random.uniform(1.2, 1.6)}, {std::cos(yaw), std::sin(yaw), 0});
+    const Rigid3 T_world_camera = looking({x, random.uniform(-0.5, 0.5), random.uniform(1.2, 1.6)}, {std::cos(yaw), std::sin(yaw), 0});
     MapKeyframe keyframe;
     keyframe.T_map_camera = options.T_day_world * bent(T_world_camera, options.curvature_per_m);
     for (std::uint32_t i = 0; i < truth.size(); ++i) {

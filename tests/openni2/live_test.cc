@@ -48,8 +48,7 @@ class Openni2Live : public ::testing::Test {
       GTEST_SKIP() << "libOpenNI2 is not installed (package libopenni2-0)";
     const Openni2Installation installation = inspect_openni2();
     std::error_code ignored;
-    if (!std::filesystem::equivalent(installation.drivers_folder, std::filesystem::path(CAMLOC_SYNTHETIC_DRIVER).parent_path(),
-                                     ignored)) {
+    if (!std::filesystem::equivalent(installation.drivers_folder, std::filesystem::path(CAMLOC_SYNTHETIC_DRIVER).parent_path(), ignored)) {
       GTEST_SKIP() << "OpenNI2 looks for drivers in " << installation.drivers_folder << ": set LD_LIBRARY_PATH as ctest does";
     }
     driver_ = ::dlopen(CAMLOC_SYNTHETIC_DRIVER, RTLD_NOW | RTLD_NODELETE);

@@ -22,8 +22,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-Result<std::unique_ptr<FrameSource>> open_bytes(const TestFolder& folder, const std::string& bytes,
-                                                const std::string& options = "", bool wants_color = false) {
+Result<std::unique_ptr<FrameSource>> open_bytes(const TestFolder& folder, const std::string& bytes, const std::string& options = "",
+                                                bool wants_color = false) {
   return open_frame_source("oni://" + folder.write("recording.oni", bytes) + options, {wants_color});
 }
 
@@ -87,8 +87,7 @@ TEST(OniSource, GivesColourWhenAsked) {
     EXPECT_EQ(pixel.r, 17 + 9 * p);
     EXPECT_EQ(pixel.g, 20 + 9 * p);
     EXPECT_EQ(pixel.b, 23 + 9 * p);
-    EXPECT_NEAR(played.frames[1].gray.pixels[static_cast<std::size_t>(p)], 0.299 * pixel.r + 0.587 * pixel.g + 0.114 * pixel.b,
-                1);
+    EXPECT_NEAR(played.frames[1].gray.pixels[static_cast<std::size_t>(p)], 0.299 * pixel.r + 0.587 * pixel.g + 0.114 * pixel.b, 1);
   }
 }
 
@@ -147,8 +146,7 @@ TEST(OniSource, LoopsAndSelects) {
   const std::int64_t length_ns = 4 * 33'000'000;
   for (std::size_t i = 0; i < 6; ++i) {
     EXPECT_EQ(played.frames[i].sequence, i / 2 * 4 + i % 2 * 2);
-    EXPECT_EQ(played.frames[i].stamp_ns,
-              static_cast<std::int64_t>(i / 2) * length_ns + static_cast<std::int64_t>(i % 2) * 66'000'000);
+    EXPECT_EQ(played.frames[i].stamp_ns, static_cast<std::int64_t>(i / 2) * length_ns + static_cast<std::int64_t>(i % 2) * 66'000'000);
   }
 }
 
@@ -199,8 +197,7 @@ TEST(OniSource, RefusesWhatItCannotUse) {
   EXPECT_EQ(code_of(OniWriter().end().bytes()), ErrorCode::kInvalid);
   EXPECT_EQ(code_of(OniWriter(2).end().bytes()), ErrorCode::kUnsupported);
   EXPECT_EQ(code_of(OniWriter().node(1, "Image", 3, "Im8z").bytes()), ErrorCode::kUnsupported);
-  EXPECT_EQ(code_of(OniWriter().node(1, "Depth", 2, "NONE").mode(1, 1, 1).frame(1, 0, 1, "xx").end().bytes()),
-            ErrorCode::kUnsupported);
+  EXPECT_EQ(code_of(OniWriter().node(1, "Depth", 2, "NONE").mode(1, 1, 1).frame(1, 0, 1, "xx").end().bytes()), ErrorCode::kUnsupported);
   EXPECT_EQ(code_of(OniWriter().node(1, "Image", 3, "NONE").frame(1, 0, 1, "xx").end().bytes()), ErrorCode::kCorrupt);  // no size
   EXPECT_EQ(code_of(small_recording(2).end().bytes(), "?speed=-1"), ErrorCode::kInvalid);
   EXPECT_EQ(code_of(small_recording(2).end().bytes(), "?loop=2"), ErrorCode::kInvalid);
@@ -265,10 +262,7 @@ TEST(OniSource, ReadsJpegColour) {
   ASSERT_TRUE(write_jpeg(folder / "image.jpg", image));
   const std::vector<std::uint8_t> jpeg = bytes_of(folder / "image.jpg");
   OniWriter writer;
-  writer.node(2, "Image", 3, "JPEG")
-      .mode(2, 32, 24)
-      .number(2, "oniPixelFormat", 200)
-      .frame(2, 0, 1, std::string(jpeg.begin(), jpeg.end()));
+  writer.node(2, "Image", 3, "JPEG").mode(2, 32, 24).number(2, "oniPixelFormat", 200).frame(2, 0, 1, std::string(jpeg.begin(), jpeg.end()));
   writer.frame(2, 33'000, 2, std::string(jpeg.begin(), jpeg.begin() + 300)).end();
   auto source = open_bytes(folder, writer.bytes(), "", true);
   ASSERT_TRUE(source) << source.status().message();

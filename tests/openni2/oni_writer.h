@@ -27,9 +27,7 @@ class OniWriter {
   static std::string bytes_of(T value) {
     return {reinterpret_cast<const char*>(&value), sizeof(value)};
   }
-  static std::string text(const std::string& value) {
-    return bytes_of(static_cast<std::uint32_t>(value.size() + 1)) + value + '\0';
-  }
+  static std::string text(const std::string& value) { return bytes_of(static_cast<std::uint32_t>(value.size() + 1)) + value + '\0'; }
 
   OniWriter& record(std::uint32_t type, std::uint32_t node, const std::string& fields, const std::string& payload = "") {
     put<std::uint32_t>(0x0052494E);
@@ -42,12 +40,9 @@ class OniWriter {
     return *this;
   }
   OniWriter& node(std::uint32_t id, const std::string& name, std::uint32_t type, const std::string& codec) {
-    return record(13, id,
-                  text(name) + bytes_of(type) + codec + bytes_of(~0U) + bytes_of(0ULL) + bytes_of(~0ULL) + bytes_of(0ULL));
+    return record(13, id, text(name) + bytes_of(type) + codec + bytes_of(~0U) + bytes_of(0ULL) + bytes_of(~0ULL) + bytes_of(0ULL));
   }
-  OniWriter& number(std::uint32_t id, const std::string& name, std::uint64_t value) {
-    return property(3, id, name, bytes_of(value));
-  }
+  OniWriter& number(std::uint32_t id, const std::string& name, std::uint64_t value) { return property(3, id, name, bytes_of(value)); }
   OniWriter& mode(std::uint32_t id, std::uint32_t width, std::uint32_t height) {
     return property(6, id, "xnMapOutputMode", bytes_of(width) + bytes_of(height) + bytes_of(30U));
   }
@@ -90,8 +85,7 @@ inline OniWriter small_recording(int count, int oni_color_format = 200, int oni_
     for (int p = 0; p < 8; ++p) depth += OniWriter::bytes_of(static_cast<std::uint16_t>(1000 + 10 * i + p));
     for (std::size_t b = 0; b < 8 * bytes_per_pixel; ++b) color += static_cast<char>(16 + i + 3 * static_cast<int>(b));
     const auto stamp_us = static_cast<std::uint64_t>(i) * 33'000;
-    writer.frame(2, stamp_us, static_cast<std::uint32_t>(i + 1), color)
-        .frame(1, stamp_us + 1000, static_cast<std::uint32_t>(i + 1), depth);
+    writer.frame(2, stamp_us, static_cast<std::uint32_t>(i + 1), color).frame(1, stamp_us + 1000, static_cast<std::uint32_t>(i + 1), depth);
   }
   return writer;
 }

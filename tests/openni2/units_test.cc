@@ -63,8 +63,7 @@ TEST(OniPixels, YuvAndRgbGiveTheSameGreyAndColour) {
                  b = 1.164 * (y - 16) + 2.017 * (u - 128);
     const auto byte = [](int value) { return static_cast<std::uint8_t>(value); };
     const Bytes uyvy{byte(u), byte(y), byte(v), byte(y)}, yuyv{byte(y), byte(u), byte(y), byte(v)};
-    for (const RawImage& image :
-         {RawImage{uyvy, 2, 1, 4, PixelLayout::kUyvy, false}, RawImage{yuyv, 2, 1, 4, PixelLayout::kYuyv, false}}) {
+    for (const RawImage& image : {RawImage{uyvy, 2, 1, 4, PixelLayout::kUyvy, false}, RawImage{yuyv, 2, 1, 4, PixelLayout::kYuyv, false}}) {
       Image<Bgr> color;
       Image<std::uint8_t> gray;
       ASSERT_TRUE(to_bgr(image, &color));

@@ -51,7 +51,6 @@ TEST(BundleAdjustment, FindsTheTruthWithNoise) {
   EXPECT_LT(camera_error_m(world.start, world.truth), 0.02);
 }
 
-
 /// Everything that comes out, bit by bit.
 void expect_same_bits(const BundleProblem& a, const BundleProblem& b) {
   for (std::size_t i = 0; i < a.T_map_camera.size(); ++i) {
@@ -165,15 +164,13 @@ TEST(BundleAdjustment, PriorsPullTheMapToControlPoints) {
   for (Rigid3& T : world.start.T_map_camera) T = T_off * T;
   for (Eigen::Vector3d& X : world.start.landmarks_m) X = T_off * X;
   for (std::uint32_t l = 0; l < 20; ++l) world.start.priors.push_back({29 * l, world.truth.landmarks_m[29 * l], 0.005});
-  world.start.priors.push_back({3, {1, 2, 3}, 0.0});                                                 // unusable:
-  world.start.priors.push_back({3, {std::numeric_limits<double>::quiet_NaN(), 2, 3}, 0.01});         // left out
+  world.start.priors.push_back({3, {1, 2, 3}, 0.0});                                          // unusable:
+  world.start.priors.push_back({3, {std::numeric_limits<double>::quiet_NaN(), 2, 3}, 0.01});  // left out
   world.options.max_iterations = 50;
   const BundleReport report = adjust_bundle(world.options, &world.start);
   EXPECT_TRUE(report.is_converged);
   EXPECT_LT(camera_error_m(world.start, world.truth), 0.06);
-  for (std::uint32_t l = 0; l < 20; ++l) {
-    EXPECT_LT((world.start.landmarks_m[29 * l] - world.truth.landmarks_m[29 * l]).norm(), 0.02);
-  }
+  for (std::uint32_t l = 0; l < 20; ++l) { EXPECT_LT((world.start.landmarks_m[29 * l] - world.truth.landmarks_m[29 * l]).norm(), 0.02); }
 }
 
 TEST(BundleAdjustment, LandmarksSeenOnceFollowTheirCamera) {

@@ -12,8 +12,8 @@
 namespace camloc {
 namespace {
 
-void expect_same_minimum([[maybe_unused]] const testing::BundleWorldOptions& world_options,
-                         [[maybe_unused]] bool use_depth, [[maybe_unused]] unsigned seed) {
+void expect_same_minimum([[maybe_unused]] const testing::BundleWorldOptions& world_options, [[maybe_unused]] bool use_depth,
+                         [[maybe_unused]] unsigned seed) {
 #ifdef CAMLOC_HAS_CERES
   std::mt19937 rng(seed);
   testing::BundleWorld world = testing::make_bundle_world(rng, world_options);
@@ -48,9 +48,7 @@ TEST(BundleOracle, LocalAdjustment) { expect_same_minimum({.num_landmarks = 1500
 // Without depth the far ends are weak: many landmarks and several known cameras make the minimum a sharp one.
 TEST(BundleOracle, PixelsOnly) { expect_same_minimum({.num_landmarks = 3000, .num_fixed = 8}, false, 4); }
 
-TEST(BundleOracle, Corridor) {
-  expect_same_minimum({.num_cameras = 60, .num_landmarks = 3000, .corridor_m = 30}, true, 5);
-}
+TEST(BundleOracle, Corridor) { expect_same_minimum({.num_cameras = 60, .num_landmarks = 3000, .corridor_m = 30}, true, 5); }
 
 }  // namespace
 }  // namespace camloc

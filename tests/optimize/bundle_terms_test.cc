@@ -67,8 +67,7 @@ TEST(LandmarkElimination, StepIsThatOfTheWholeSystem) {
   for (int i = 0; i < 20; ++i) {
     const Sight sight(rng);
     const BundleModel model(sight.options);
-    const std::vector<BundleCamera> cameras{{sight.T_map_camera[0], kFixedCamera}, {sight.T_map_camera[1], 0},
-                                            {sight.T_map_camera[2], 1}};
+    const std::vector<BundleCamera> cameras{{sight.T_map_camera[0], kFixedCamera}, {sight.T_map_camera[1], 0}, {sight.T_map_camera[2], 1}};
     // The whole Gauss-Newton matrix from residuals by differences, weighted as the kernels weight.
     Eigen::MatrixXd H = Eigen::MatrixXd::Zero(15, 15);
     Eigen::VectorXd g = Eigen::VectorXd::Zero(15);

@@ -56,7 +56,9 @@ inline Rigid3 pose_of(const CeresCamera& camera) {
 class CeresBundle {
  public:
   CeresBundle(const BundleOptions& options, const BundleProblem& problem)
-      : landmarks_(problem.landmarks_m), pixel_loss_(options.pixel_kernel_sigmas), depth_loss_(options.depth_kernel_sigmas),
+      : landmarks_(problem.landmarks_m),
+        pixel_loss_(options.pixel_kernel_sigmas),
+        depth_loss_(options.depth_kernel_sigmas),
         problem_(problem_options()) {
     for (const Rigid3& T_map_camera : problem.T_map_camera) cameras_.push_back(ceres_camera(T_map_camera));
     std::vector<std::uint32_t> num_observations(landmarks_.size(), 0);
@@ -102,12 +104,10 @@ class CeresBundle {
     double* const camera = cameras_[o.camera].data();
     double* const X = landmarks_[o.landmark].data();
     auto* const pixel = new CeresPixelCost{o.x, o.y, options.focal_px / o.sigma_px};
-    problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<CeresPixelCost, 2, 6, 3>(pixel),
-                              &pixel_loss_, camera, X);
+    problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<CeresPixelCost, 2, 6, 3>(pixel), &pixel_loss_, camera, X);
     if (!options.use_depth || !(o.depth_m > 0)) return;
     auto* const depth = new CeresDepthCost{o.depth_m, 1.0 / options.depth_noise.sigma_m(o.depth_m)};
-    problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<CeresDepthCost, 1, 6, 3>(depth),
-                              &depth_loss_, camera, X);
+    problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<CeresDepthCost, 1, 6, 3>(depth), &depth_loss_, camera, X);
   }
 
   std::vector<CeresCamera> cameras_;

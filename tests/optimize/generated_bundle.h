@@ -21,11 +21,11 @@ struct BundleWorld {
 
 struct BundleWorldOptions {
   std::uint32_t num_cameras = 20, num_landmarks = 600;
-  std::uint32_t num_fixed = 1;           ///< the first ones, at the truth
+  std::uint32_t num_fixed = 1;  ///< the first ones, at the truth
   double noise_px = 1, outlier_ratio = 0, depth_ratio = 1;
   double position_error_m = 0.05, rotation_error_rad = 0.02, landmark_error_m = 0.05;
-  double seen_ratio = 1;                 ///< of the landmarks in view
-  double corridor_m = 0;                 ///< > 0: length of the way around a square of corridors instead of a room
+  double seen_ratio = 1;  ///< of the landmarks in view
+  double corridor_m = 0;  ///< > 0: length of the way around a square of corridors instead of a room
 };
 
 /// Pose `s` metres along a square loop of this length, looking ahead.
@@ -64,7 +64,8 @@ inline Eigen::Vector3d make_landmark(std::mt19937& rng, const BundleWorldOptions
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   const double side = uniform(rng) < 0.5 ? -1 : 1, along = uniform(rng), height = 3 * uniform(rng), relief = uniform(rng);
   if (o.corridor_m > 0) {  // numbered along the way, as they are created
-    return pose_on_loop((index + along) / o.num_landmarks * o.corridor_m, o.corridor_m) * Eigen::Vector3d(side * (0.9 + 0.2 * relief), 1.5 - height, 0);
+    return pose_on_loop((index + along) / o.num_landmarks * o.corridor_m, o.corridor_m) *
+           Eigen::Vector3d(side * (0.9 + 0.2 * relief), 1.5 - height, 0);
   }
   const double across = 6 * along - 3, depth = side * (3 - 0.5 * relief);
   return uniform(rng) < 0.5 ? Eigen::Vector3d(across, depth, height) : Eigen::Vector3d(depth, across, height);
@@ -96,8 +97,7 @@ inline BundleWorld make_bundle_world(std::mt19937& rng, const BundleWorldOptions
       const double spread = (is_outlier ? 60 : o.noise_px) / focal_px, stretch = is_outlier ? 0.5 + uniform(rng) : 1.0;
       const double x = p.x() / p.z() + spread * normal(rng), y = p.y() / p.z() + spread * normal(rng);
       const double depth = p.z() * stretch + world.options.depth_noise.sigma_m(p.z()) * normal(rng);
-      truth.observations.push_back({c, l, static_cast<float>(x), static_cast<float>(y),
-                                    has_depth ? static_cast<float>(depth) : 0.0F,
+      truth.observations.push_back({c, l, static_cast<float>(x), static_cast<float>(y), has_depth ? static_cast<float>(depth) : 0.0F,
                                     static_cast<float>(std::max(o.noise_px, 0.1))});
       world.is_outlier.push_back(is_outlier ? 1 : 0);
     }

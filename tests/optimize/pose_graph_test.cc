@@ -35,9 +35,11 @@ TEST(PoseGraph, EdgeDerivativesAgreeWithDifferences) {
     for (int k = 0; k < 6; ++k) {
       const Vector6d step = 1e-6 * Vector6d::Unit(k);
       const Vector6d by_i = (edge_term(edge, moved_in_camera_axes(T_map_i, step), T_map_j).residual -
-                             edge_term(edge, moved_in_camera_axes(T_map_i, -step), T_map_j).residual) / 2e-6;
+                             edge_term(edge, moved_in_camera_axes(T_map_i, -step), T_map_j).residual) /
+                            2e-6;
       const Vector6d by_j = (edge_term(edge, T_map_i, moved_in_camera_axes(T_map_j, step)).residual -
-                             edge_term(edge, T_map_i, moved_in_camera_axes(T_map_j, -step)).residual) / 2e-6;
+                             edge_term(edge, T_map_i, moved_in_camera_axes(T_map_j, -step)).residual) /
+                            2e-6;
       EXPECT_LT((by_i - term.J_i.col(k)).norm(), 1e-6 * (1 + by_i.norm()));
       EXPECT_LT((by_j - term.J_j.col(k)).norm(), 1e-6 * (1 + by_j.norm()));
     }
@@ -53,7 +55,8 @@ TEST(PoseGraph, PriorDerivativesAgreeWithDifferences) {
     for (int k = 0; k < 6; ++k) {
       const Vector6d step = 1e-6 * Vector6d::Unit(k);
       const Vector6d difference = (prior_term(prior, moved_in_camera_axes(T_map_i, step)).residual -
-                                   prior_term(prior, moved_in_camera_axes(T_map_i, -step)).residual) / 2e-6;
+                                   prior_term(prior, moved_in_camera_axes(T_map_i, -step)).residual) /
+                                  2e-6;
       EXPECT_LT((difference - term.J.col(k)).norm(), 1e-6 * (1 + difference.norm()));
     }
   }
@@ -108,14 +111,11 @@ TEST(PoseGraph, SpreadsTheErrorOfALoop) {
   EXPECT_LT(report.edge_chi2.back(), 16.8);  // 99 % of chi2 with 6 degrees of freedom
 }
 
-
 TEST(PoseGraph, KernelWithstandsFalseLoops) {
   std::mt19937 rng(4);
   Loop loop = make_loop(rng, 200, 0.01, 0.002);
   const Rigid3 wrong{exp_so3({0, 0, 1}), {0.5, 0.5, 0}};
-  for (std::uint32_t i = 0; i < 5; ++i) {
-    loop.graph.edges.push_back({20 * i, 20 * i + 70, wrong, diagonal_covariance(0.02, 0.01)});
-  }
+  for (std::uint32_t i = 0; i < 5; ++i) { loop.graph.edges.push_back({20 * i, 20 * i + 70, wrong, diagonal_covariance(0.02, 0.01)}); }
   PoseGraph without_kernel = loop.graph, without_false_loops = loop.graph;
   without_false_loops.edges.resize(200);
   PoseGraphOptions options;
@@ -154,8 +154,8 @@ TEST(PoseGraph, BadMeasurementsAreLeftOut) {
   bad.edges.push_back({3, 30, Rigid3{}, Matrix6d::Zero()});
   bad.edges.push_back({3, 30, Rigid3{}, -Matrix6d::Identity()});
   bad.edges.push_back({3, 30, Rigid3{}, Matrix6d::Constant(std::numeric_limits<double>::quiet_NaN())});
-  bad.edges.push_back({3, 30, Rigid3{Eigen::Quaterniond::Identity(), {std::numeric_limits<double>::infinity(), 0, 0}},
-                       Matrix6d::Identity()});
+  bad.edges.push_back(
+      {3, 30, Rigid3{Eigen::Quaterniond::Identity(), {std::numeric_limits<double>::infinity(), 0, 0}}, Matrix6d::Identity()});
   const PoseGraphReport report = optimize_pose_graph({}, &bad);
   optimize_pose_graph({}, &loop.graph);
   for (std::size_t i = 50; i < 54; ++i) EXPECT_TRUE(std::isinf(report.edge_chi2[i]));

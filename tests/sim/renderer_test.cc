@@ -21,8 +21,7 @@ const World& small_world() {
 
 /// Smallest depth along a pixel's ray over all surfaces that face the camera; 0 when it hits nothing.
 double cast_ray(const Scene& scene, const Rigid3& T_world_camera, const Intrinsics& camera, double x, double y) {
-  const Eigen::Vector3d ray =
-      T_world_camera.rotation * Eigen::Vector3d((x - camera.cx) / camera.fx, (y - camera.cy) / camera.fy, 1.0);
+  const Eigen::Vector3d ray = T_world_camera.rotation * Eigen::Vector3d((x - camera.cx) / camera.fx, (y - camera.cy) / camera.fy, 1.0);
   double nearest = 1e9;
   for (const Surface& s : scene.surfaces) {
     const double facing = s.normal().dot(ray);
@@ -94,8 +93,7 @@ TEST(Renderer, TwoViewsAgreeInDepthAndBrightness) {
   EXPECT_GT(num_inside, 5000);
   EXPECT_LE(num_in_front, num_inside / 500);
   ASSERT_GT(brightness_errors.size(), static_cast<std::size_t>(num_inside) / 2);
-  std::nth_element(brightness_errors.begin(),
-                   brightness_errors.begin() + static_cast<std::ptrdiff_t>(brightness_errors.size() / 2),
+  std::nth_element(brightness_errors.begin(), brightness_errors.begin() + static_cast<std::ptrdiff_t>(brightness_errors.size() / 2),
                    brightness_errors.end());
   EXPECT_LT(brightness_errors[brightness_errors.size() / 2], 0.02);
 }

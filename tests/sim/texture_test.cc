@@ -31,8 +31,7 @@ Spread spread_of(const Skin& skin, float foot_m) {
 }
 
 TEST(Texture, FromFarAwayDetailFadesAndTheMeanStays) {
-  for (const Material material :
-       {Material::kCarpet, Material::kTiles, Material::kCeiling, Material::kKeyboard, Material::kBrick}) {
+  for (const Material material : {Material::kCarpet, Material::kTiles, Material::kCeiling, Material::kKeyboard, Material::kBrick}) {
     const Skin skin{material, 7, 0.5F};
     const Spread near = spread_of(skin, 0.0005F), far = spread_of(skin, 0.5F);
     EXPECT_LT(far.sigma, 0.6 * near.sigma) << static_cast<int>(material);

@@ -58,7 +58,7 @@ TEST(DenseLinks, NoneToAnotherSegmentOrWithoutThumbnail) {
   EXPECT_EQ(room.add(pose, {0, 0, 0}, 0), 0);
   EXPECT_EQ(room.add(pose, {0, 0, 0}, 1), 0);
   EXPECT_EQ(room.add(pose, {0, 0, 0}, 1, false), 0);
-  EXPECT_EQ(room.add(pose, {0, 0, 0}, 1), 0);          // the one before has none
+  EXPECT_EQ(room.add(pose, {0, 0, 0}, 1), 0);  // the one before has none
   EXPECT_EQ(room.add(pose, {0, 0, 0}, 1), 2);
 }
 

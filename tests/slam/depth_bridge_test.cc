@@ -55,7 +55,7 @@ TEST(DepthBridge, FollowsAPanAcrossAWall) {
   const Vector6d error = pose_error(pan(0).inverse() * pan(14), last->T_begin_camera);
   EXPECT_LT(error.head<3>().norm(), 0.03);
   EXPECT_LT(error.tail<3>().norm(), 0.012);
-  EXPECT_LT(error.dot(last->covariance.inverse() * error), 40);   // 6 degrees of freedom
+  EXPECT_LT(error.dot(last->covariance.inverse() * error), 40);  // 6 degrees of freedom
 }
 
 TEST(DepthBridge, EndsWhereTheStampsHaveAGap) {
@@ -63,7 +63,7 @@ TEST(DepthBridge, EndsWhereTheStampsHaveAGap) {
   ASSERT_TRUE(scenery.step(1, kFrameNs));
   EXPECT_FALSE(scenery.step(2, 6 * kFrameNs));
   EXPECT_FALSE(scenery.bridge.is_open());
-  EXPECT_FALSE(scenery.step(3, 7 * kFrameNs));   // and there is none until a view is tracked again
+  EXPECT_FALSE(scenery.step(3, 7 * kFrameNs));  // and there is none until a view is tracked again
 }
 
 // Without texture nothing says where along the wall the camera is, and the covariance knows.

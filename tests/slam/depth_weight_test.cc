@@ -13,9 +13,7 @@ constexpr double kMedianOfNormal = 0.6745;
 double quadratic_after(int num_windows, double quadratic_of_file, double quadratic_of_scatter) {
   DepthWeight weight;
   const DepthNoise file{0, quadratic_of_file};
-  for (int i = 0; i < num_windows; ++i) {
-    weight.observe(kMedianOfNormal * quadratic_of_scatter / weight.weighted(file).quadratic_per_m);
-  }
+  for (int i = 0; i < num_windows; ++i) { weight.observe(kMedianOfNormal * quadratic_of_scatter / weight.weighted(file).quadratic_per_m); }
   return weight.weighted(file).quadratic_per_m;
 }
 
@@ -26,9 +24,7 @@ TEST(DepthWeight, WhatIsObservedCountsNotWhatTheFileSays) {
   EXPECT_GT(lax, 0.0005);
 }
 
-TEST(DepthWeight, FollowsTheScatter) {
-  EXPECT_NEAR(quadratic_after(100, 0.006, 0.003) / quadratic_after(100, 0.006, 0.0015), 2, 0.05);
-}
+TEST(DepthWeight, FollowsTheScatter) { EXPECT_NEAR(quadratic_after(100, 0.006, 0.003) / quadratic_after(100, 0.006, 0.0015), 2, 0.05); }
 
 TEST(DepthWeight, StaysWithinWhatTheFileMakesPlausible) {
   DepthWeight fresh;

@@ -47,7 +47,7 @@ TEST(FarLandmarks, NeedABaselineAndTheSameSegment) {
   f.add(looking({0, 0, 1.5}, 0));
   EXPECT_EQ(add_far_landmarks({}, f.add(looking({0.05, 0, 1.5}, 0)), &f.map), 0);
   EXPECT_EQ(add_far_landmarks({}, f.add(looking({0.8, 0, 1.5}, 0), 1), &f.map), 0);
-  EXPECT_EQ(add_far_landmarks({}, f.add(looking({0.8, 0, 1.5}, 1.5), 1), &f.map), 0);   // looks elsewhere
+  EXPECT_EQ(add_far_landmarks({}, f.add(looking({0.8, 0, 1.5}, 1.5), 1), &f.map), 0);  // looks elsewhere
   EXPECT_EQ(add_far_landmarks({}, 0, &f.map), 0);
 }
 
@@ -66,8 +66,8 @@ TEST(Triangulate, FindsThePoint) {
 
 TEST(Triangulate, RefusesWhatIsBehindAndParallel) {
   const Rigid3 a, b{Eigen::Quaterniond::Identity(), {1, 0, 0}};
-  EXPECT_FALSE(triangulate(a, {0, 0}, b, {0, 0}).has_value());        // meet nowhere
-  EXPECT_FALSE(triangulate(a, {-0.1, 0}, b, {0.1, 0}).has_value());   // meet behind
+  EXPECT_FALSE(triangulate(a, {0, 0}, b, {0, 0}).has_value());       // meet nowhere
+  EXPECT_FALSE(triangulate(a, {-0.1, 0}, b, {0.1, 0}).has_value());  // meet behind
   EXPECT_FALSE(triangulate(a, {0.1, 0}, a, {0.1, 0}).has_value());
 }
 

@@ -21,7 +21,7 @@ namespace camloc::testing {
 
 struct WorldPoint {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::UnitX();
-  double reference_m = 3;   ///< distance at which it is a corner of level 0
+  double reference_m = 3;  ///< distance at which it is a corner of level 0
   Descriptor descriptor;
 };
 
@@ -97,10 +97,10 @@ inline Rigid3 looking(const Eigen::Vector3d& position_m, double yaw_rad, double 
 }
 
 struct ViewerOptions {
-  double noise_px = 0.4;             ///< of level 0; a little more on higher ones
-  double seen_share = 0.85;          ///< of the points in view
-  double depth_noise_share = 0.5;    ///< of the camera's sigma
-  double hole_share = 0.1;           ///< features without depth
+  double noise_px = 0.4;           ///< of level 0; a little more on higher ones
+  double seen_share = 0.85;        ///< of the points in view
+  double depth_noise_share = 0.5;  ///< of the camera's sigma
+  double hole_share = 0.1;         ///< features without depth
   double depth_outlier_share = 0, descriptor_outlier_share = 0;
   int flipped_bits = 14;
   std::size_t max_features = 600;
@@ -156,7 +156,7 @@ class Viewer {
     const Eigen::Vector3d to = from - point.position_m;
     if (to.dot(point.normal) < 0.3 * to.norm()) return false;
     return std::none_of(world_.blocks.begin(), world_.blocks.end(), [&](const WorldBlock& block) {
-      double begin = 0, end = 1;   // of the stretch of the line of sight inside the block
+      double begin = 0, end = 1;  // of the stretch of the line of sight inside the block
       for (int axis = 0; axis < 2; ++axis) {
         const double start = from[axis], step = point.position_m[axis] - from[axis];
         if (std::abs(step) < 1e-9) {
@@ -241,9 +241,9 @@ class Viewer {
 
 /// SLAM over a walk, and what was true. Frames are numbered from 0.
 struct Walk {
-  std::vector<Rigid3> T_world_camera;           ///< per frame
-  std::vector<ViewReport> reports;              ///< per frame
-  std::vector<std::vector<std::uint32_t>> shown;   ///< per frame and feature: the point of the world
+  std::vector<Rigid3> T_world_camera;             ///< per frame
+  std::vector<ViewReport> reports;                ///< per frame
+  std::vector<std::vector<std::uint32_t>> shown;  ///< per frame and feature: the point of the world
 };
 
 /// Changes a view before SLAM gets it.

@@ -24,7 +24,7 @@ TEST(LandmarkSet, HoldsEachLandmarkOnceInTheOrderOfTheKeyframes) {
   LandmarkSet set;
   const std::uint32_t keyframes[] = {2, 1, 2};
   set.assign(f.map, keyframes, 100000);
-  EXPECT_EQ(set.size(), f.map.keyframe(2).num_landmarks + f.map.keyframe(1).num_landmarks);   // none are shared
+  EXPECT_EQ(set.size(), f.map.keyframe(2).num_landmarks + f.map.keyframe(1).num_landmarks);  // none are shared
   EXPECT_EQ(f.map.landmark(set.id(0)).sightings.front().keyframe, 2U);
   EXPECT_EQ(set.position_m(0), f.map.landmark(set.id(0)).position_m);
   EXPECT_EQ(set.descriptors().size(), set.size());

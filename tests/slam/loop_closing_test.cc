@@ -73,13 +73,15 @@ TEST(LoopClosing, ADriftedLoopIsClosedAndTheErrorSpreads) {
   const std::size_t then = 4, now = then + static_cast<std::size_t>(std::lround(4 * kSideM / 0.15));
   EXPECT_GT(relative_error_m(open, then, now), 0.15);
   EXPECT_LT(relative_error_m(closed, then, now), 0.03);
-  EXPECT_LT(trajectory_error_m(closed.result, 0, closed.walk.T_world_camera), 0.8 * trajectory_error_m(open.result, 0, open.walk.T_world_camera));
+  EXPECT_LT(trajectory_error_m(closed.result, 0, closed.walk.T_world_camera),
+            0.8 * trajectory_error_m(open.result, 0, open.walk.T_world_camera));
   // Nowhere is the trajectory torn.
   EXPECT_LT(largest_step_error_m(closed), 0.04);
   // Both laps see the same landmarks.
   std::uint32_t num_common = 0;
   const auto num_keyframes = static_cast<std::uint32_t>(closed.map.keyframes().size());
-  for (const CovisibleKeyframe& c : closed.map.covisible(num_keyframes - 1, 1)) num_common += c.keyframe < num_keyframes / 4 ? c.num_shared : 0;
+  for (const CovisibleKeyframe& c : closed.map.covisible(num_keyframes - 1, 1))
+    num_common += c.keyframe < num_keyframes / 4 ? c.num_shared : 0;
   EXPECT_GE(num_common, 60U);
 }
 

@@ -116,7 +116,7 @@ TEST(MapAdjustment, AnotherSegmentIsNotTouched) {
   adjust_globally(bundle_for(d.viewer.camera()), 0, {}, 3.0, &d.map);
   EXPECT_EQ(d.map.keyframe(other).view.T_map_camera.translation, before.translation);
   EXPECT_EQ(d.map.landmarks().back().position_m, landmark);
-  const MapFit fit = adjust_globally(bundle_for(d.viewer.camera()), 9, {}, 3.0, &d.map);   // there is no such segment
+  const MapFit fit = adjust_globally(bundle_for(d.viewer.camera()), 9, {}, 3.0, &d.map);  // there is no such segment
   EXPECT_EQ(fit.num_sightings, 0U);
 }
 
@@ -145,7 +145,7 @@ TEST(MapAdjustment, ControlLandmarksMoveTheMapToWhereTheyWereSurveyed) {
     EXPECT_LT((d.map.keyframe(k).view.T_map_camera.translation - expected[k].translation).norm(), 0.01);
     EXPECT_LT(rotation_distance_rad(d.map.keyframe(k).view.T_map_camera.rotation, expected[k].rotation), 0.005);
   }
-  EXPECT_EQ(d.map.landmarks().size(), num_landmarks);   // nobody finds a control point by its looks
+  EXPECT_EQ(d.map.landmarks().size(), num_landmarks);  // nobody finds a control point by its looks
   // Two do not determine a frame: the first keyframe stays.
   const Rigid3 first = d.map.keyframe(0).view.T_map_camera;
   adjust_globally(bundle_for(d.viewer.camera()), 0, {std::span(controls).first(2), {}}, 3.0, &d.map);

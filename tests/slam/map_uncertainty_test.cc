@@ -119,7 +119,8 @@ TEST(MapUncertainty, SurveyedPointsHoldAMap) {
   }
   held.problem.landmarks_m = positions;
   for (BundleObservation& o : held.problem.observations) o.landmark = new_number[o.landmark];
-  std::stable_sort(held.problem.observations.begin(), held.problem.observations.end(), [](const auto& a, const auto& b) { return a.landmark < b.landmark; });
+  std::stable_sort(held.problem.observations.begin(), held.problem.observations.end(),
+                   [](const auto& a, const auto& b) { return a.landmark < b.landmark; });
   held.landmarks.resize(positions.size() - held.problem.priors.size());
   adjust_bundle(world.options, &held.problem);
   EXPECT_LT(estimate_uncertainty({}, world.options, held).sigma_m, 0.7 * free_m);
@@ -133,8 +134,10 @@ TEST(MapUncertainty, AViewOfNextToNothingDoesNotDecide) {
   std::vector<BundleObservation> kept;
   std::uint32_t num_of_blind = 0;
   for (const BundleObservation& o : world.start.observations) {
-    if (o.camera != 7) kept.push_back(o);
-    else if (num_of_blind++ < 5) kept.push_back({o.camera, o.landmark, o.x, o.y, 0, o.sigma_px});
+    if (o.camera != 7)
+      kept.push_back(o);
+    else if (num_of_blind++ < 5)
+      kept.push_back({o.camera, o.landmark, o.x, o.y, 0, o.sigma_px});
   }
   world.start.observations = kept;
   const Adjusted adjusted = adjust(world);

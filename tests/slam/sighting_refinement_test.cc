@@ -16,7 +16,7 @@
 namespace camloc {
 namespace {
 
-constexpr double kTextureUnit = 0.005;   // metres: one pixel of level 0 from 2.6 m away
+constexpr double kTextureUnit = 0.005;  // metres: one pixel of level 0 from 2.6 m away
 
 /// The wall is the plane z = 0; cameras look along +z from below.
 class TexturedWall {
@@ -39,13 +39,15 @@ class TexturedWall {
   }
 
   /// One feature a point, off by up to `error_px` pixels of its level.
-  ViewFeatures see(const Rigid3& T_map_camera, const std::vector<Eigen::Vector3d>& points, std::uint8_t level, double error_px, std::mt19937_64* rng) const {
+  ViewFeatures see(const Rigid3& T_map_camera, const std::vector<Eigen::Vector3d>& points, std::uint8_t level, double error_px,
+                   std::mt19937_64* rng) const {
     std::uniform_real_distribution<double> error(-error_px, error_px);
     const double scale = std::pow(1.2, level);
     ViewFeatures view;
     view.T_map_camera = T_map_camera;
     for (const Eigen::Vector3d& point : points) {
-      const Eigen::Vector2d pixel = camera_.color.project(T_map_camera.inverse() * point) + scale * Eigen::Vector2d(error(*rng), error(*rng));
+      const Eigen::Vector2d pixel =
+          camera_.color.project(T_map_camera.inverse() * point) + scale * Eigen::Vector2d(error(*rng), error(*rng));
       const Eigen::Vector2d normalized = camera_.color.undistort(pixel);
       view.features.keypoints.push_back({static_cast<float>(pixel.x()), static_cast<float>(pixel.y()), 0, 1, level});
       view.features.descriptors.push_back({{(*rng)(), (*rng)(), (*rng)(), (*rng)()}});
@@ -79,7 +81,8 @@ double spread_px(const SlamMap& map, const std::vector<Rigid3>& T_map_camera_tru
     double sum = 0;
     Eigen::Vector3d first = Eigen::Vector3d::Zero();
     for (const Sighting& s : landmark.sightings) {
-      const Eigen::Vector3d place = TexturedWall::hit(T_map_camera_true[s.keyframe], map.keyframe(s.keyframe).view.normalized[s.feature].cast<double>());
+      const Eigen::Vector3d place =
+          TexturedWall::hit(T_map_camera_true[s.keyframe], map.keyframe(s.keyframe).view.normalized[s.feature].cast<double>());
       if (&s == &landmark.sightings.front()) first = place;
       sum += (place - first).norm() / kTextureUnit;
     }
@@ -112,8 +115,10 @@ struct Scene {
       T_map_camera_true.push_back(T);
       const std::uint32_t keyframe = map.add_keyframe(T_map_camera_true.size() - 1, 0, std::move(view));
       for (std::uint32_t i = 0; i < points.size(); ++i) {
-        if (keyframe == 0) map.add_landmark({0, i});
-        else map.add_sighting(i, {keyframe, i});
+        if (keyframe == 0)
+          map.add_landmark({0, i});
+        else
+          map.add_sighting(i, {keyframe, i});
       }
     }
     for (std::uint32_t i = 0; i < points.size(); ++i) map.summarize(i);
@@ -126,7 +131,7 @@ TEST(SightingRefinement, SightingsBecomeOnePoint) {
   const SightingRefinementReport report = refine_sightings({}, &scene.map);
   const double after = spread_px(scene.map, scene.T_map_camera_true);
   EXPECT_EQ(report.num_references, 150U);
-  EXPECT_GT(report.num_refined(), 350U);   // of 450
+  EXPECT_GT(report.num_refined(), 350U);  // of 450
   EXPECT_GT(before, 0.5);
   EXPECT_LT(after, 0.2 * before);
 }

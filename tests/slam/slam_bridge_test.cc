@@ -50,7 +50,7 @@ TEST(SlamBridge, CarriesAcrossABareWall) {
     num_keyframes += report.is_bridged && report.is_keyframe ? 1U : 0U;
   }
   EXPECT_EQ(num_bridged, turn.slam.counts().num_bridged);
-  EXPECT_GE(num_keyframes, 10U);   // 1.2 rad are turned
+  EXPECT_GE(num_keyframes, 10U);  // 1.2 rad are turned
   const Rigid3 T_before_after = result.poses[kBareBegin - 1].T_map_camera.inverse() * result.poses[kBareEnd].T_map_camera;
   const Rigid3 expected = turn.T_world_camera[kBareBegin - 1].inverse() * turn.T_world_camera[kBareEnd];
   EXPECT_LT((T_before_after.translation - expected.translation).norm(), 0.015);

@@ -88,12 +88,12 @@ TEST(SlamMap, AFeatureShowsOneLandmarkAndAKeyframeSeesItOnce) {
   SlamMap map(test_camera(), 1.2F, 8);
   const std::uint32_t k0 = map.add_keyframe(0, 0, grid_view(20, 2.0F, &rng)), k1 = map.add_keyframe(1, 0, grid_view(20, 2.0F, &rng));
   const std::uint32_t a = map.add_landmark({k0, 3}), b = map.add_landmark({k0, 4});
-  map.add_sighting(a, {k0, 5});   // seen already
+  map.add_sighting(a, {k0, 5});  // seen already
   map.add_sighting(b, {k1, 6});
-  map.add_sighting(a, {k1, 6});   // taken
+  map.add_sighting(a, {k1, 6});  // taken
   EXPECT_EQ(map.landmark(a).sightings.size(), 1U);
   EXPECT_EQ(map.landmark(b).sightings.size(), 2U);
-  map.remove_sighting(a, k1);     // never saw it
+  map.remove_sighting(a, k1);  // never saw it
   EXPECT_EQ(map.num_alive_landmarks(), 2U);
   map.remove_sighting(a, k0);
   EXPECT_EQ(map.num_alive_landmarks(), 1U);
@@ -111,8 +111,8 @@ TEST(SlamMap, MergingKeepsTheSightingsOfTheOneThatStays) {
   map.add_sighting(b, {2, 4});
   map.merge(b, a);
   ASSERT_EQ(map.landmark(a).sightings.size(), 3U);
-  EXPECT_EQ(map.landmark(a).sightings[1].feature, 3U);   // its own in keyframe 1
-  EXPECT_EQ(map.landmark(a).sightings[2].feature, 4U);   // the other's in keyframe 2
+  EXPECT_EQ(map.landmark(a).sightings[1].feature, 3U);  // its own in keyframe 1
+  EXPECT_EQ(map.landmark(a).sightings[2].feature, 4U);  // the other's in keyframe 2
   EXPECT_EQ(map.keyframe(1).landmark_of_feature[2], kNoLandmark);
   EXPECT_EQ(map.resolve(b), static_cast<std::int32_t>(a));
   map.merge(a, c);
@@ -139,9 +139,12 @@ TEST(SlamMap, StaysConsistentUnderRandomOperations) {
     }
     const std::int32_t landmark = map.resolve(below(map.landmarks().size())), other = map.resolve(below(map.landmarks().size()));
     if (landmark == kNoLandmark || other == kNoLandmark) continue;
-    if (what < 12) map.add_sighting(static_cast<std::uint32_t>(landmark), s);
-    else if (what < 16) map.remove_sighting(static_cast<std::uint32_t>(landmark), s.keyframe);
-    else map.merge(static_cast<std::uint32_t>(landmark), static_cast<std::uint32_t>(other));
+    if (what < 12)
+      map.add_sighting(static_cast<std::uint32_t>(landmark), s);
+    else if (what < 16)
+      map.remove_sighting(static_cast<std::uint32_t>(landmark), s.keyframe);
+    else
+      map.merge(static_cast<std::uint32_t>(landmark), static_cast<std::uint32_t>(other));
     if (step % 200 == 0) expect_consistent(map);
   }
   expect_consistent(map);
@@ -158,7 +161,7 @@ TEST(SlamMap, CovisibleCountsSharedLandmarksAndOrdersThem) {
   std::mt19937_64 rng(1);
   SlamMap map(test_camera(), 1.2F, 8);
   for (int k = 0; k < 5; ++k) map.add_keyframe(static_cast<std::uint64_t>(k), 0, grid_view(50, 2.0F, &rng));
-  const std::uint32_t shared[] = {0, 10, 30, 10, 2};   // of keyframe 0 with the others
+  const std::uint32_t shared[] = {0, 10, 30, 10, 2};  // of keyframe 0 with the others
   for (std::uint32_t f = 0; f < 50; ++f) {
     const std::uint32_t landmark = map.add_landmark({0, f});
     for (std::uint32_t k = 1; k < 5; ++k) {
@@ -218,7 +221,7 @@ TEST(SlamMap, ScaleAndNoiseGrowWithTheLevel) {
   const SlamMap map(test_camera(), 1.2F, 8);
   EXPECT_FLOAT_EQ(map.scale_of_level(0), 1);
   EXPECT_NEAR(map.scale_of_level(7), std::pow(1.2, 7), 1e-4);
-  EXPECT_EQ(map.scale_of_level(200), map.scale_of_level(7));   // levels from outside are not believed
+  EXPECT_EQ(map.scale_of_level(200), map.scale_of_level(7));  // levels from outside are not believed
   for (std::uint8_t level = 1; level < 8; ++level) EXPECT_GT(map.sigma_px(level), map.sigma_px(static_cast<std::uint8_t>(level - 1)));
 }
 

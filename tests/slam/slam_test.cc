@@ -283,9 +283,10 @@ TEST(Slam, FarLandmarksCarryTrackingWithoutDepth) {
     std::uint32_t num_far = 0;
     for (const SlamLandmark& landmark : slam.map().landmarks()) {
       if (!landmark.is_alive()) continue;
-      num_far += std::none_of(landmark.sightings.begin(), landmark.sightings.end(), [&](const Sighting& s) {
-        return slam.map().keyframe(s.keyframe).view.depth_m[s.feature] > 0;
-      }) ? 1U : 0U;
+      num_far += std::none_of(landmark.sightings.begin(), landmark.sightings.end(),
+                              [&](const Sighting& s) { return slam.map().keyframe(s.keyframe).view.depth_m[s.feature] > 0; })
+                     ? 1U
+                     : 0U;
     }
     EXPECT_EQ(num_far > 100, has_far) << num_far;
     const SlamResult result = slam.finish();

@@ -78,7 +78,7 @@ TEST(Tracker, PosesFollowTheirReferenceWhenItMoves) {
   const Rigid3 T_reference_camera = f.tracker.T_reference_camera();
   f.map.keyframe(0).view.T_map_camera.translation += Eigen::Vector3d(1, 0, 0);
   EXPECT_EQ(f.tracker.T_reference_camera().translation, T_reference_camera.translation);
-  f.tracker.set_reference(1);   // the pose is the same, said by another keyframe
+  f.tracker.set_reference(1);  // the pose is the same, said by another keyframe
   const Rigid3 now = f.map.keyframe(1).view.T_map_camera * f.tracker.T_reference_camera();
   EXPECT_LT((now.translation - (Fixture::pose(0).translation + Eigen::Vector3d(1, 0, 0))).norm(), 1e-9);
 }
@@ -147,8 +147,8 @@ TEST(Tracker, WantsAKeyframeWhenTheViewIsNew) {
   };
   EXPECT_FALSE(wants(Fixture::pose(0)));
   EXPECT_FALSE(wants(Fixture::pose(0.05)));
-  EXPECT_TRUE(wants(looking(Fixture::pose(0).translation, 0.25)));   // turned
-  EXPECT_TRUE(wants(looking({0.3, 0.4, 1.4}, 0)));                   // moved
+  EXPECT_TRUE(wants(looking(Fixture::pose(0).translation, 0.25)));  // turned
+  EXPECT_TRUE(wants(looking({0.3, 0.4, 1.4}, 0)));                  // moved
   Registration few;
   few.T_map_camera = Fixture::pose(0);
   few.inliers.resize(40);

@@ -29,7 +29,8 @@ struct TrueKeyframes {
   }
   /// Are all sightings of the landmark of the same point?
   [[nodiscard]] bool is_one_point(const SlamLandmark& landmark) const {
-    return std::all_of(landmark.sightings.begin(), landmark.sightings.end(), [&](const Sighting& s) { return point(s) == point(landmark.sightings[0]); });
+    return std::all_of(landmark.sightings.begin(), landmark.sightings.end(),
+                       [&](const Sighting& s) { return point(s) == point(landmark.sightings[0]); });
   }
   [[nodiscard]] std::uint32_t point(const Sighting& s) const { return shown[s.keyframe][s.feature]; }
 };

@@ -115,7 +115,7 @@ TEST(ViewRegistration, DepthMakesThePoseBetter) {
 TEST(ViewRegistration, TheSameInputGivesTheSameBits) {
   SeenRoom f, g;
   const ViewFeatures view = f.viewer.see(10, kTruth);
-  (void)g.registration.unguided(g.viewer.see(11, looking({0, 0, 1.4}, -0.2)), &g.landmarks, 9);   // what came before does not matter
+  (void)g.registration.unguided(g.viewer.see(11, looking({0, 0, 1.4}, -0.2)), &g.landmarks, 9);  // what came before does not matter
   const Registration a = f.registration.unguided(view, &f.landmarks, 3), b = g.registration.unguided(view, &g.landmarks, 3);
   EXPECT_EQ(a.T_map_camera.translation, b.T_map_camera.translation);
   EXPECT_EQ(a.T_map_camera.rotation.coeffs(), b.T_map_camera.rotation.coeffs());

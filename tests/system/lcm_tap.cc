@@ -3,12 +3,10 @@
 //
 // Prints what arrives over LCM, one line of "key=value" words a message, for the scenario tests.
 // Usage: lcm_tap SECONDS [MAX_POSES]   ends after that time, or that many poses
-#include <lcm/lcm-cpp.hpp>
-
-
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <lcm/lcm-cpp.hpp>
 
 #include "bot_core/pose_t.hpp"
 #include "camloc/pose_t.hpp"
@@ -21,20 +19,22 @@ struct Tap {
 
   void on_pose(const lcm::ReceiveBuffer* buffer, const std::string&, const camloc::pose_t* m) {
     ++num_poses;
-    std::printf("pose seq=%lld utime=%lld received=%lld state=%d reason=%d map=%016llx parent=%s reset=%d inliers=%d x=%.6f y=%.6f z=%.6f\n",
-                static_cast<long long>(m->sequence), static_cast<long long>(m->utime), static_cast<long long>(buffer->recv_utime), m->state,
-                m->reason, static_cast<unsigned long long>(m->map_id), m->parent_frame.c_str(), m->reset_counter, m->num_inliers, m->pos[0],
-                m->pos[1], m->pos[2]);
+    std::printf(
+        "pose seq=%lld utime=%lld received=%lld state=%d reason=%d map=%016llx parent=%s reset=%d inliers=%d x=%.6f y=%.6f z=%.6f\n",
+        static_cast<long long>(m->sequence), static_cast<long long>(m->utime), static_cast<long long>(buffer->recv_utime), m->state,
+        m->reason, static_cast<unsigned long long>(m->map_id), m->parent_frame.c_str(), m->reset_counter, m->num_inliers, m->pos[0],
+        m->pos[1], m->pos[2]);
   }
   void on_status(const lcm::ReceiveBuffer*, const std::string&, const camloc::status_t* m) {
-    std::printf("status state=%d received=%lld dropped=%lld published=%lld rss=%lld reloads=%lld failures=%lld camera=%s stalls=%lld "
-                "restarts=%lld reopens=%lld resets=%lld recovery_ms=%.1f packets_lost=%lld incomplete=%lld unpaired=%lld text=%s\n", m->state,
-                static_cast<long long>(m->frames_received), static_cast<long long>(m->frames_dropped), static_cast<long long>(m->poses_published),
-                static_cast<long long>(m->rss_bytes), static_cast<long long>(m->map_reloads), static_cast<long long>(m->map_reload_failures),
-                m->camera_state.c_str(), static_cast<long long>(m->camera_stalls), static_cast<long long>(m->stream_restarts),
-                static_cast<long long>(m->device_reopens), static_cast<long long>(m->device_resets), m->last_recovery_ms,
-                static_cast<long long>(m->packets_lost), static_cast<long long>(m->frames_incomplete),
-                static_cast<long long>(m->frames_unpaired), m->state_text.c_str());
+    std::printf(
+        "status state=%d received=%lld dropped=%lld published=%lld rss=%lld reloads=%lld failures=%lld camera=%s stalls=%lld "
+        "restarts=%lld reopens=%lld resets=%lld recovery_ms=%.1f packets_lost=%lld incomplete=%lld unpaired=%lld text=%s\n",
+        m->state, static_cast<long long>(m->frames_received), static_cast<long long>(m->frames_dropped),
+        static_cast<long long>(m->poses_published), static_cast<long long>(m->rss_bytes), static_cast<long long>(m->map_reloads),
+        static_cast<long long>(m->map_reload_failures), m->camera_state.c_str(), static_cast<long long>(m->camera_stalls),
+        static_cast<long long>(m->stream_restarts), static_cast<long long>(m->device_reopens), static_cast<long long>(m->device_resets),
+        m->last_recovery_ms, static_cast<long long>(m->packets_lost), static_cast<long long>(m->frames_incomplete),
+        static_cast<long long>(m->frames_unpaired), m->state_text.c_str());
   }
   void on_bot_core(const lcm::ReceiveBuffer*, const std::string&, const bot_core::pose_t* m) {
     std::printf("bot_core utime=%lld x=%.6f\n", static_cast<long long>(m->utime), m->pos[0]);

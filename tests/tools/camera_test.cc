@@ -40,10 +40,11 @@ TEST(CameraCommandTest, ImportsWhatOthersWrite) {
 
 TEST(CameraCommandTest, ShowsFieldOfViewAndDepth) {
   const TemporaryFolder folder;
-  const std::string path = folder.write("c.toml",
-                                        "name = \"c\"\n[color]\nwidth = 640\nheight = 480\nfx = 320.0\nfy = 320.0\ncx = 319.5\ncy = 239.5\nlens = \"pinhole\"\n"
-                                        "[depth]\nregistered = false\nwidth = 320\nheight = 240\nfx = 285.0\nfy = 285.0\ncx = 160.0\ncy = 120.0\nlens = \"pinhole\"\n"
-                                        "[extrinsics]\ntranslation_m = [-0.025, 0.0, 0.0]\nrotation_wxyz = [1.0, 0.0, 0.0, 0.0]\n");
+  const std::string path = folder.write(
+      "c.toml",
+      "name = \"c\"\n[color]\nwidth = 640\nheight = 480\nfx = 320.0\nfy = 320.0\ncx = 319.5\ncy = 239.5\nlens = \"pinhole\"\n"
+      "[depth]\nregistered = false\nwidth = 320\nheight = 240\nfx = 285.0\nfy = 285.0\ncx = 160.0\ncy = 120.0\nlens = \"pinhole\"\n"
+      "[extrinsics]\ntranslation_m = [-0.025, 0.0, 0.0]\nrotation_wxyz = [1.0, 0.0, 0.0, 0.0]\n");
   const CommandOutput output = camera({"show", path});
   ASSERT_EQ(output.exit_code, 0) << output.err;
   EXPECT_NE(output.out.find("field of view 90.0 x 73.7 deg"), std::string::npos) << output.out;

@@ -62,7 +62,9 @@ TEST(DoctorUsbTest, DriversInTheWay) {
     usb.add("1-2", device);
     const auto devices = list_usb_devices(usb.folders());
     const char* detail = level == Level::kWarning ? "gspca_kinect has it" : level == Level::kFailure ? "another program" : "in the way";
-    const char* advice = level == Level::kWarning ? "modprobe -r gspca_kinect" : level == Level::kFailure ? "fuser -v /dev/bus/usb/001/005" : "";
+    const char* advice = level == Level::kWarning   ? "modprobe -r gspca_kinect"
+                         : level == Level::kFailure ? "fuser -v /dev/bus/usb/001/005"
+                                                    : "";
     expect(check_usb_driver(devices, "kinect", false), level, detail, advice);
     if (level == Level::kWarning) expect(check_usb_driver(devices, "v4l2", false), Level::kOk, "");
     if (level == Level::kFailure) expect(check_usb_driver(devices, "kinect", true), Level::kOk, "camlocd");
@@ -106,9 +108,11 @@ TEST(DoctorUsbTest, Openni2FolderOfDrivers) {
 TEST(DoctorSystemTest, ServiceStates) {
   const std::string loaded = "LoadState=loaded\nUnitFileState=enabled\n";
   expect(check_service(loaded + "ActiveState=active\nSubState=running\nResult=success\nNRestarts=0\n"), Level::kOk, "active");
-  expect(check_service(loaded + "ActiveState=active\nSubState=running\nNRestarts=3\n"), Level::kWarning, "3 restarts", "journalctl -u camlocd");
+  expect(check_service(loaded + "ActiveState=active\nSubState=running\nNRestarts=3\n"), Level::kWarning, "3 restarts",
+         "journalctl -u camlocd");
   expect(check_service(loaded + "ActiveState=failed\nSubState=failed\nResult=watchdog\n"), Level::kFailure, "watchdog", "journalctl");
-  expect(check_service(loaded + "ActiveState=activating\nSubState=auto-restart\nResult=exit-code\n"), Level::kFailure, "exit-code", "journalctl");
+  expect(check_service(loaded + "ActiveState=activating\nSubState=auto-restart\nResult=exit-code\n"), Level::kFailure, "exit-code",
+         "journalctl");
   expect(check_service(loaded + "ActiveState=activating\nSubState=start\n"), Level::kWarning, "starting", "journalctl");
   expect(check_service(loaded + "ActiveState=inactive\nSubState=dead\n"), Level::kWarning, "inactive", "sudo systemctl start camlocd");
   expect(check_service("LoadState=loaded\nUnitFileState=disabled\nActiveState=inactive\n"), Level::kWarning, "not enabled", "enable --now");
@@ -136,11 +140,13 @@ TEST(DoctorSystemTest, MemoryAndLcm) {
 
 TEST(DoctorSetupTest, CalibrationOfAnotherImageSize) {
   const TemporaryFolder folder;
-  const std::string path =
-      folder.write("c.toml", "[color]\nwidth = 64\nheight = 48\nfx = 50.0\nfy = 50.0\ncx = 32.0\ncy = 24.0\nlens = \"pinhole\"\n[depth]\nregistered = true\n");
+  const std::string path = folder.write(
+      "c.toml",
+      "[color]\nwidth = 64\nheight = 48\nfx = 50.0\nfy = 50.0\ncx = 32.0\ncy = 24.0\nlens = \"pinhole\"\n[depth]\nregistered = true\n");
   expect(check_calibration(path, std::nullopt, FrameSize{64, 48}), Level::kOk, path);
   expect(check_calibration(path, std::nullopt, std::nullopt), Level::kOk, path);
-  expect(check_calibration(path, std::nullopt, FrameSize{640, 480}), Level::kFailure, "is for 64x48 pixels, the camera gives 640x480", "camloc camera calibrate");
+  expect(check_calibration(path, std::nullopt, FrameSize{640, 480}), Level::kFailure, "is for 64x48 pixels, the camera gives 640x480",
+         "camloc camera calibrate");
   expect(check_calibration(folder / "none.toml", std::nullopt, std::nullopt), Level::kFailure, "none.toml", "set another");
   const nlohmann::ordered_json answer{{"is_calibration_suspect", true}, {"focal_scale", 1.17}};
   expect(check_calibration(path, answer, std::nullopt), Level::kWarning, "1.170 times", "calibrate");

@@ -23,10 +23,10 @@ class DoctorTest : public ::testing::Test {
 
   void install_camlocd(const std::string& check_script, const std::string& printed_config) const {
     const std::string printed = folder_.write("printed.toml", printed_config);
-    (void)folder_.write("camlocd",
-                        "#!/bin/sh\nfor last; do :; done\nif [ \"$last\" = --print-config ]; then cat " + printed + "; else " +
-                            check_script + "; fi\n",
-                        true);
+    (void)folder_.write(
+        "camlocd",
+        "#!/bin/sh\nfor last; do :; done\nif [ \"$last\" = --print-config ]; then cat " + printed + "; else " + check_script + "; fi\n",
+        true);
   }
   /// The answer as JSON and the exit code.
   [[nodiscard]] std::pair<json, int> examine(std::vector<std::string> options = {}) const {
@@ -47,9 +47,8 @@ class DoctorTest : public ::testing::Test {
 };
 
 TEST_F(DoctorTest, WhatIsMissingFailsWithAdvice) {
-  install_camlocd("exit 0", "[map]\npath = \"" + (folder_ / "none.cmap") + "\"\n[source]\nurl = \"replay://" +
-                                (folder_ / "none") + "\"\n[control]\nsocket = \"" + (folder_ / "none.sock") +
-                                "\"\n[publish]\nlcm_url = \"file://x\"\n");
+  install_camlocd("exit 0", "[map]\npath = \"" + (folder_ / "none.cmap") + "\"\n[source]\nurl = \"replay://" + (folder_ / "none") +
+                                "\"\n[control]\nsocket = \"" + (folder_ / "none.sock") + "\"\n[publish]\nlcm_url = \"file://x\"\n");
   const auto [document, exit_code] = examine();
   EXPECT_EQ(exit_code, 1);
   EXPECT_EQ(document["ok"], false);

@@ -25,8 +25,8 @@ unit_m = 0.001
 TEST(EpipolarCommandTest, NeedsACameraAndARecording) {
   EXPECT_EQ(run_command(add_epipolar_command, {"epipolar", "--estimate", "e"}).exit_code, 2);
   const TemporaryFolder folder;
-  const CommandOutput output = run_command(add_epipolar_command, {"epipolar", "--estimate", folder.write("e.tum", "1 0 0 0 0 0 0 1\n"), "--sequence",
-                                                                  folder / "missing", "--camera", folder / "missing.toml"});
+  const CommandOutput output = run_command(add_epipolar_command, {"epipolar", "--estimate", folder.write("e.tum", "1 0 0 0 0 0 0 1\n"),
+                                                                  "--sequence", folder / "missing", "--camera", folder / "missing.toml"});
   EXPECT_EQ(output.exit_code, 1);
   EXPECT_NE(output.err.find("missing.toml"), std::string::npos) << output.err;
 }
@@ -37,8 +37,8 @@ TEST(EpipolarCommandTest, AnotherRecordingIsAnError) {
   (void)folder.write("rgb.txt", "5.0 rgb.png\n");
   (void)folder.write("depth.txt", "5.0 depth.png\n");
   const CommandOutput output =
-      run_command(add_epipolar_command, {"epipolar", "--estimate", folder.write("e.tum", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n"), "--sequence", folder.path(),
-                                         "--camera", folder.write("camera.toml", kCamera)});
+      run_command(add_epipolar_command, {"epipolar", "--estimate", folder.write("e.tum", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n"),
+                                         "--sequence", folder.path(), "--camera", folder.write("camera.toml", kCamera)});
   EXPECT_EQ(output.exit_code, 2);
   EXPECT_NE(output.err.find("is it the recording"), std::string::npos) << output.err;
 }
@@ -46,8 +46,9 @@ TEST(EpipolarCommandTest, AnotherRecordingIsAnError) {
 // Before a single image is read: there is none here.
 TEST(EpipolarCommandTest, OnePoseHasNoPartner) {
   const TemporaryFolder folder;
-  const CommandOutput output = run_command(add_epipolar_command, {"epipolar", "--estimate", folder.write("e.tum", "1 0 0 0 0 0 0 1\n"), "--sequence",
-                                                                  folder / "missing", "--camera", folder.write("camera.toml", kCamera)});
+  const CommandOutput output =
+      run_command(add_epipolar_command, {"epipolar", "--estimate", folder.write("e.tum", "1 0 0 0 0 0 0 1\n"), "--sequence",
+                                         folder / "missing", "--camera", folder.write("camera.toml", kCamera)});
   EXPECT_EQ(output.exit_code, 1);
   EXPECT_NE(output.err.find("no two images of these poses see the same things"), std::string::npos) << output.err;
 }

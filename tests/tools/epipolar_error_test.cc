@@ -30,7 +30,8 @@ std::vector<Point> make_points(int count) {
   std::mt19937_64 rng(7);
   std::uniform_real_distribution<double> uniform(-1, 1);
   std::vector<Point> points;
-  for (int i = 0; i < count; ++i) points.push_back({{0.8 * uniform(rng), 0.6 * uniform(rng), 2.2 + uniform(rng)}, {{rng(), rng(), rng(), rng()}}});
+  for (int i = 0; i < count; ++i)
+    points.push_back({{0.8 * uniform(rng), 0.6 * uniform(rng), 2.2 + uniform(rng)}, {{rng(), rng(), rng(), rng()}}});
   return points;
 }
 
@@ -68,7 +69,8 @@ TEST(EpipolarError, RightPosesLeaveTheNoiseOfTheFeatures) {
 TEST(EpipolarError, WrongPosesAreJudgedAndNotBelieved) {
   const auto points = make_points(300);
   EpipolarMeter meter(color(), {});
-  const Rigid3 turned{kB.rotation * exp_so3({0.01, 0, 0}), kB.translation}, shifted{kB.rotation, kB.translation + Eigen::Vector3d(0, 0.03, 0)};
+  const Rigid3 turned{kB.rotation * exp_so3({0.01, 0, 0}), kB.translation},
+      shifted{kB.rotation, kB.translation + Eigen::Vector3d(0, 0.03, 0)};
   for (const Rigid3& believed : {turned, shifted}) {
     const auto error = meter.measure(see(points, kA, kA, 0, 1), see(points, kB, believed, 0, 2));
     ASSERT_TRUE(error);
@@ -86,13 +88,14 @@ TEST(EpipolarError, ViewsThatShareTooLittleSayNothing) {
 }
 
 TEST(EpipolarError, TheSampsonDistanceIsThatOfTheMatchWhereTheLineIsKnown) {
-  const Rigid3 T_b_a{Eigen::Quaterniond::Identity(), {0.2, 0, 0}};   // epipolar lines are rows
+  const Rigid3 T_b_a{Eigen::Quaterniond::Identity(), {0.2, 0, 0}};  // epipolar lines are rows
   EXPECT_NEAR(sampson_distance(T_b_a, {0.1, 0.05}, {0.2, 0.05}), 0, 1e-12);
   EXPECT_NEAR(sampson_distance(T_b_a, {0.1, 0.05}, {0.2, 0.07}), 0.02 / std::sqrt(2.0), 1e-12);
 }
 
 TEST(EpipolarError, TheMostSimilarViewsAreNearAndLookTheSameWay) {
-  const Rigid3 near{exp_so3({0, 0.05, 0}), {0.1, 0, 0}}, turned{exp_so3({0, 1.0, 0}), {0, 0, 0}}, far{Eigen::Quaterniond::Identity(), {1, 0, 0}};
+  const Rigid3 near{exp_so3({0, 0.05, 0}), {0.1, 0, 0}}, turned{exp_so3({0, 1.0, 0}), {0, 0, 0}},
+      far{Eigen::Quaterniond::Identity(), {1, 0, 0}};
   const std::vector<Rigid3> others{turned, far, near};
   EXPECT_EQ(most_similar_views(kA, others, {false, false, false}, 2), (std::vector<std::size_t>{2, 1}));
   EXPECT_EQ(most_similar_views(kA, others, {false, false, true}, 5), (std::vector<std::size_t>{1, 0}));

@@ -30,8 +30,8 @@ TEST(EvalCommandTest, CountsAllFramesThatWereTried) {
 
 TEST(EvalCommandTest, AnotherRecordingIsAnError) {
   const TemporaryFolder folder;
-  const CommandOutput output = run_command(add_eval_command, {"eval", "--estimate", folder.write("e.tum", "90 0 0 0 0 0 0 1\n"), "--reference",
-                                                              folder.write("r.tum", kReference)});
+  const CommandOutput output = run_command(add_eval_command, {"eval", "--estimate", folder.write("e.tum", "90 0 0 0 0 0 0 1\n"),
+                                                              "--reference", folder.write("r.tum", kReference)});
   EXPECT_EQ(output.exit_code, 2);
   EXPECT_NE(output.err.find("same recording"), std::string::npos) << output.err;
   EXPECT_EQ(output.out, "");

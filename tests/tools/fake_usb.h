@@ -43,7 +43,8 @@ class FakeUsb {
     if (!device.serial.empty()) write(folder + "/serial", device.serial + "\n");
     const std::string interface = folder + "/" + name + ":1.0";
     std::filesystem::create_directories(folder_.path() + interface);
-    if (!device.driver.empty()) std::filesystem::create_symlink("../../../bus/usb/drivers/" + device.driver, folder_.path() + interface + "/driver");
+    if (!device.driver.empty())
+      std::filesystem::create_symlink("../../../bus/usb/drivers/" + device.driver, folder_.path() + interface + "/driver");
     std::snprintf(id, sizeof id, "%03d", device.address);
     write("/dev/bus/usb/00" + name.substr(0, 1) + "/" + id, "");
   }

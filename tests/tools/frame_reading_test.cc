@@ -62,7 +62,8 @@ TEST(FrameReading, NothingButBrokenFramesIsTold) {
   const Read seen = read({broken("rgb/0.png: cut off"), broken("b")});
   ASSERT_TRUE(seen.counts.is_ok());
   EXPECT_TRUE(seen.counts->are_all_corrupt());
-  EXPECT_NE(all_frames_corrupt(*seen.counts).message().find("none of 2 frames could be read, the first because of rgb/0.png: cut off"), std::string::npos);
+  EXPECT_NE(all_frames_corrupt(*seen.counts).message().find("none of 2 frames could be read, the first because of rgb/0.png: cut off"),
+            std::string::npos);
   EXPECT_FALSE(read({}).counts->are_all_corrupt());
 }
 
@@ -81,7 +82,8 @@ TEST(FrameReading, StopsWhenAsked) {
 TEST(FrameReading, VisitorsErrorIsTheResult) {
   ScriptedSource source(std::vector<Status>(10, Status::ok()));
   int num_calls = 0;
-  const auto counts = read_frames(source, [&](FrameBuffer&) { return ++num_calls < 2 ? Status::ok() : Status(ErrorCode::kInvalid, "wrong size"); });
+  const auto counts =
+      read_frames(source, [&](FrameBuffer&) { return ++num_calls < 2 ? Status::ok() : Status(ErrorCode::kInvalid, "wrong size"); });
   EXPECT_EQ(counts.status().code(), ErrorCode::kInvalid);
   EXPECT_EQ(num_calls, 2);
 }

@@ -50,7 +50,8 @@ TEST(MapSketchTest, KeepsItsSizeAndShowsTheCamera) {
 
 TEST(MapSketchTest, ArrowsPointWhereTheCameraLooks) {
   const MapSketch sketch = room(40, 10);
-  for (const auto& [forward, arrow] : {std::pair<Eigen::Vector3d, char>{{1, 0, 0}, '>'}, {{-1, 0, 0}, '<'}, {{0, -1, 0}, 'v'}, {{0, 0, -1}, '+'}}) {
+  for (const auto& [forward, arrow] :
+       {std::pair<Eigen::Vector3d, char>{{1, 0, 0}, '>'}, {{-1, 0, 0}, '<'}, {{0, -1, 0}, 'v'}, {{0, 0, -1}, '+'}}) {
     const auto lines = rows_of(sketch.draw(camera_at(4, 1, forward)));
     bool is_there = false;
     for (std::size_t i = 0; i + 1 < lines.size(); ++i) is_there = is_there || lines[i].find(arrow) != std::string::npos;

@@ -191,8 +191,8 @@ TEST(MonitorViewTest, ScreenShowsCameraRecoveryAndStages) {
   state.status->clock_drift_ppm = -12.5;
   state.sketch = "  o.o\n";
   const std::string screen = monitor_screen(state);
-  for (const char* part : {"stalled, replay://walk", "1234 received", "17 packets lost", "2 stream restarts", "the last took 812 ms", "clock -12.5 ppm",
-                           "WARNING   the camera is silent", "extract", "  o.o\n"}) {
+  for (const char* part : {"stalled, replay://walk", "1234 received", "17 packets lost", "2 stream restarts", "the last took 812 ms",
+                           "clock -12.5 ppm", "WARNING   the camera is silent", "extract", "  o.o\n"}) {
     EXPECT_NE(screen.find(part), std::string::npos) << part << "\n" << screen;
   }
   EXPECT_EQ(state.latencies.of(0).median_ms, 2.5);
@@ -208,7 +208,8 @@ TEST(MonitorViewTest, JsonHasEveryFieldOfTheCamera) {
   const json record = status_json(status);
   EXPECT_EQ(record["camera_state"], "streaming");
   EXPECT_EQ(record["frames_unpaired"], 4);
-  for (const char* key : {"camera_stalls", "stream_restarts", "device_reopens", "device_resets", "last_recovery_ms", "packets_lost", "frames_incomplete", "clock_drift_ppm"}) {
+  for (const char* key : {"camera_stalls", "stream_restarts", "device_reopens", "device_resets", "last_recovery_ms", "packets_lost",
+                          "frames_incomplete", "clock_drift_ppm"}) {
     EXPECT_TRUE(record.contains(key)) << key;
   }
 }

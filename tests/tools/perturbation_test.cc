@@ -41,7 +41,7 @@ TEST(PerturbationTest, TonesFollowTheirFormulas) {
 }
 
 TEST(PerturbationTest, OrderMatters) {
-  EXPECT_EQ(changed({"exposure=4", "exposure=0.25"}).pixels[200], 64);   // saturates first
+  EXPECT_EQ(changed({"exposure=4", "exposure=0.25"}).pixels[200], 64);  // saturates first
   EXPECT_EQ(changed({"exposure=0.25", "exposure=4"}).pixels[200], 200);
 }
 
@@ -76,7 +76,8 @@ TEST(PerturbationTest, BlurSpreadsAPointAlongItsRow) {
 }
 
 TEST(PerturbationTest, RefusesEverythingElse) {
-  for (const char* text : {"", "=", "gamma", "gamma=", "gamma=x", "gamma=1x", "gamma=nan", "gamma=0", "gama=1", "noise=-1", "noise=129", "blur=0", "blur=102"}) {
+  for (const char* text : {"", "=", "gamma", "gamma=", "gamma=x", "gamma=1x", "gamma=nan", "gamma=0", "gama=1", "noise=-1", "noise=129",
+                           "blur=0", "blur=102"}) {
     const auto parsed = parse_perturbation(text);
     ASSERT_FALSE(parsed.is_ok()) << text;
     EXPECT_EQ(parsed.status().code(), ErrorCode::kInvalid);

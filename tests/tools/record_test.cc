@@ -70,7 +70,8 @@ TEST_F(RecordTest, ColorAndJpeg) {
   EXPECT_EQ(replayed[5].depth.pixels, expected[5].depth.pixels);
   ASSERT_EQ(replayed[5].color.pixels.size(), expected[5].color.pixels.size());
   double difference = 0;
-  for (std::size_t i = 0; i < replayed[5].color.pixels.size(); ++i) difference += std::abs(replayed[5].color.pixels[i].g - expected[5].color.pixels[i].g);
+  for (std::size_t i = 0; i < replayed[5].color.pixels.size(); ++i)
+    difference += std::abs(replayed[5].color.pixels[i].g - expected[5].color.pixels[i].g);
   EXPECT_LT(difference / static_cast<double>(replayed[5].color.pixels.size()), 3);
   const CommandOutput without = run_record({"--source", kSample, "--out", folder_ / "third", "--color"});
   EXPECT_EQ(without.exit_code, 2);
@@ -79,7 +80,8 @@ TEST_F(RecordTest, ColorAndJpeg) {
 }
 
 TEST_F(RecordTest, LimitsEndIt) {
-  EXPECT_NE(run_record({"--source", "sample://?rate_hz=0&width=64&height=48", "--out", out_, "--frames", "7"}).out.find("7 frames"), std::string::npos);
+  EXPECT_NE(run_record({"--source", "sample://?rate_hz=0&width=64&height=48", "--out", out_, "--frames", "7"}).out.find("7 frames"),
+            std::string::npos);
   const std::string timed = folder_ / "timed";
   ASSERT_EQ(run_record({"--source", "sample://?rate_hz=10&width=64&height=48", "--out", timed, "--seconds", "0.35"}).exit_code, 0);
   EXPECT_EQ(all_frames(timed).size(), 4U);
@@ -109,7 +111,8 @@ TEST_F(RecordTest, NothingStartsOnAFullDisk) {
 }
 
 TEST_F(RecordTest, ACameraOfAnotherSizeIsRefused) {
-  const std::string camera = folder_.write("camera.toml", "[color]\nwidth = 64\nheight = 48\nfx = 50\nfy = 50\ncx = 32\ncy = 24\n[depth]\nregistered = true\n");
+  const std::string camera =
+      folder_.write("camera.toml", "[color]\nwidth = 64\nheight = 48\nfx = 50\nfy = 50\ncx = 32\ncy = 24\n[depth]\nregistered = true\n");
   const CommandOutput output = run_record({"--source", kSample, "--out", out_, "--camera", camera});
   EXPECT_EQ(output.exit_code, 2);
   EXPECT_NE(output.err.find("64x48"), std::string::npos) << output.err;
@@ -141,7 +144,8 @@ class LiveSource final : public FrameSource {
     frame->stamp_ns = std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
     frame->gray.resize(size_, size_);
     frame->depth.resize(size_, size_);
-    for (std::size_t i = 0; i < frame->depth.pixels.size(); ++i) frame->depth.pixels[i] = static_cast<std::uint16_t>(i * 7919 + static_cast<std::size_t>(index_));
+    for (std::size_t i = 0; i < frame->depth.pixels.size(); ++i)
+      frame->depth.pixels[i] = static_cast<std::uint16_t>(i * 7919 + static_cast<std::size_t>(index_));
     return Status::ok();
   }
 
@@ -199,7 +203,9 @@ TEST_F(RecordTest, ADiskThatFillsUpEndsItWhole) {
   RecordingFolder folder = make_folder(out_);
   RecorderHooks hooks;
   int calls = 0;
-  hooks.free_bytes = [&calls](const RecordingFolder&) -> Result<std::uint64_t> { return ++calls < 10 ? std::uint64_t{1} << 40 : std::uint64_t{1} << 20; };
+  hooks.free_bytes = [&calls](const RecordingFolder&) -> Result<std::uint64_t> {
+    return ++calls < 10 ? std::uint64_t{1} << 40 : std::uint64_t{1} << 20;
+  };
   const RecordingSummary summary = record(&source, &folder, {}, {}, hooks);
   EXPECT_EQ(summary.end.code(), ErrorCode::kIo);
   EXPECT_NE(summary.end.message().find("1 MiB left"), std::string::npos) << summary.end.message();

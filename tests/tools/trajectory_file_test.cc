@@ -50,7 +50,8 @@ TEST(TrajectoryFileTest, WhatIsWrittenIsRead) {
 
 TEST(TrajectoryFileTest, ReadsPlainTumFiles) {
   const TemporaryFolder folder;
-  const auto read = read_trajectory(folder.write("t.tum", "# by another program\n# frame 3 of 7\n1.5 0 0 1 0 0 0 1\n\n2.5 0 0 2 0 0 0 1\n"));
+  const auto read =
+      read_trajectory(folder.write("t.tum", "# by another program\n# frame 3 of 7\n1.5 0 0 1 0 0 0 1\n\n2.5 0 0 2 0 0 0 1\n"));
   ASSERT_TRUE(read.is_ok()) << read.status().message();
   EXPECT_EQ(read->poses.size(), 2U);
   EXPECT_FALSE(read->num_frames || read->T_color_depth || read->suspect_focal_scale || read->poses[0].covariance);

@@ -87,8 +87,10 @@ Contestant new_contestant(const std::string& name, const std::vector<std::string
 }
 
 void record(const camloc::Localization& result, Contestant* contestant) {
-  for (int i = 0; i < camloc::kNumStages; ++i) contestant->stages[static_cast<std::size_t>(i)].add(result.stage_ns[static_cast<std::size_t>(i)]);
-  if (result.state == camloc::State::kLocalized) contestant->trajectory.poses.push_back({result.stamp_ns, result.T_map_camera, result.covariance});
+  for (int i = 0; i < camloc::kNumStages; ++i)
+    contestant->stages[static_cast<std::size_t>(i)].add(result.stage_ns[static_cast<std::size_t>(i)]);
+  if (result.state == camloc::State::kLocalized)
+    contestant->trajectory.poses.push_back({result.stamp_ns, result.T_map_camera, result.covariance});
 }
 
 void record(const camloc::bench::ReferenceResult& result, std::int64_t stamp_ns, Contestant* contestant) {
@@ -109,7 +111,8 @@ double median_ratio(const Contestant& ours, const Contestant& reference) {
 }
 
 void print_table(const std::vector<Contestant>& contestants, std::uint64_t num_frames, const BenchArguments& arguments) {
-  std::printf("%llu frames, mode %s, %s time, milliseconds\n", static_cast<unsigned long long>(num_frames), arguments.mode.c_str(), arguments.clock.c_str());
+  std::printf("%llu frames, mode %s, %s time, milliseconds\n", static_cast<unsigned long long>(num_frames), arguments.mode.c_str(),
+              arguments.clock.c_str());
   for (const Contestant& contestant : contestants) {
     std::printf("\n%-22s %8s %8s %8s\n", contestant.name.c_str(), "p50", "p95", "p99");
     for (const Samples& stage : contestant.stages) {
@@ -118,23 +121,27 @@ void print_table(const std::vector<Contestant>& contestants, std::uint64_t num_f
     std::printf("  poses %zu", contestant.trajectory.poses.size());
     if (contestant.errors) {
       const TrajectoryErrors& e = *contestant.errors;
-      std::printf(", median %.2f cm / %.2f deg, p90 %.2f cm, within 5cm/5deg %.1f %%, misleading %llu", 100 * e.translation_m.median, e.rotation_deg.median,
-                  100 * e.translation_m.p90, 100 * e.share_within[1], static_cast<unsigned long long>(e.num_misleading));
+      std::printf(", median %.2f cm / %.2f deg, p90 %.2f cm, within 5cm/5deg %.1f %%, misleading %llu", 100 * e.translation_m.median,
+                  e.rotation_deg.median, 100 * e.translation_m.p90, 100 * e.share_within[1],
+                  static_cast<unsigned long long>(e.num_misleading));
     }
     std::printf("\n");
   }
-  if (contestants.size() == 2) std::printf("\nper frame, the reference takes %.1f times as long (median)\n", median_ratio(contestants[0], contestants[1]));
+  if (contestants.size() == 2)
+    std::printf("\nper frame, the reference takes %.1f times as long (median)\n", median_ratio(contestants[0], contestants[1]));
 }
 
 void print_json(const std::vector<Contestant>& contestants, std::uint64_t num_frames, const BenchArguments& arguments) {
   Json json{{"frames", num_frames}, {"mode", arguments.mode}, {"clock", arguments.clock}};
   for (const Contestant& contestant : contestants) {
     Json stages;
-    for (const Samples& stage : contestant.stages) stages[stage.name] = {{"p50", stage.percentile(0.5)}, {"p95", stage.percentile(0.95)}, {"p99", stage.percentile(0.99)}};
+    for (const Samples& stage : contestant.stages)
+      stages[stage.name] = {{"p50", stage.percentile(0.5)}, {"p95", stage.percentile(0.95)}, {"p99", stage.percentile(0.99)}};
     Json entry{{"stages_ms", stages}, {"poses", contestant.trajectory.poses.size()}};
     if (contestant.errors) {
       const TrajectoryErrors& e = *contestant.errors;
-      entry["translation_m"] = {{"median", e.translation_m.median}, {"mean", e.translation_m.mean}, {"p90", e.translation_m.p90}, {"max", e.translation_m.max}};
+      entry["translation_m"] = {
+          {"median", e.translation_m.median}, {"mean", e.translation_m.mean}, {"p90", e.translation_m.p90}, {"max", e.translation_m.max}};
       entry["rotation_deg"] = {{"median", e.rotation_deg.median}, {"p90", e.rotation_deg.p90}};
       entry["within_5cm_5deg"] = e.share_within[1];
       entry["within_10cm_10deg"] = e.share_within[2];
@@ -150,7 +157,8 @@ camloc::Status bench(const BenchArguments& arguments) {
   const camloc::StageTimer::Clock clock = arguments.clock == "cpu" ? thread_cpu_ns : camloc::tools::monotonic_ns;
   std::vector<Contestant> contestants;
   contestants.push_back(new_contestant("camloc", {"extract", "candidates", "match", "estimate", "verify", "total"}));
-  if (arguments.has_reference) contestants.push_back(new_contestant("opencv", {"extract (cv::ORB)", "match (BFMatcher)", "estimate (PnP)", "total"}));
+  if (arguments.has_reference)
+    contestants.push_back(new_contestant("opencv", {"extract (cv::ORB)", "match (BFMatcher)", "estimate (PnP)", "total"}));
 
   std::uint64_t num_frames = 0;
   std::vector<camloc::StampedPose> truth;
@@ -175,11 +183,14 @@ camloc::Status bench(const BenchArguments& arguments) {
   }
   if (!truth.empty()) {
     for (Contestant& contestant : contestants) {
-      contestant.errors = camloc::tools::compare(contestant.trajectory, [&](std::int64_t stamp_ns) { return camloc::pose_at(truth, stamp_ns); }, num_frames);
+      contestant.errors = camloc::tools::compare(
+          contestant.trajectory, [&](std::int64_t stamp_ns) { return camloc::pose_at(truth, stamp_ns); }, num_frames);
     }
   }
-  if (arguments.is_json) print_json(contestants, num_frames, arguments);
-  else print_table(contestants, num_frames, arguments);
+  if (arguments.is_json)
+    print_json(contestants, num_frames, arguments);
+  else
+    print_table(contestants, num_frames, arguments);
   return camloc::Status::ok();
 }
 
@@ -194,14 +205,19 @@ int main(int argc, char** argv) {
   app.add_option("--sequence", arguments.run.sequence_url, "Folder or URL of the recording")->required();
   app.add_option("--camera", arguments.run.camera_path, "Camera file")->required();
   app.add_option("--frames", arguments.run.frames, "Frames to use: start:stop:step[,...]");
-  app.add_option("--mode", arguments.mode, "track: frames follow each other; single: every frame on its own")->check(CLI::IsMember({"track", "single"}))->capture_default_str();
-  app.add_option("--clock", arguments.clock, "wall, or cpu: time of this thread only, steadier on a busy machine")->check(CLI::IsMember({"wall", "cpu"}))->capture_default_str();
+  app.add_option("--mode", arguments.mode, "track: frames follow each other; single: every frame on its own")
+      ->check(CLI::IsMember({"track", "single"}))
+      ->capture_default_str();
+  app.add_option("--clock", arguments.clock, "wall, or cpu: time of this thread only, steadier on a busy machine")
+      ->check(CLI::IsMember({"wall", "cpu"}))
+      ->capture_default_str();
   app.add_option("--repeat", arguments.repeat, "Passes over the sequence")->check(CLI::Range(1, 1000))->capture_default_str();
   app.add_flag("--reference-opencv", arguments.has_reference, "Also run cv::ORB + cv::BFMatcher + cv::solvePnPRansac on the same frames");
   app.add_flag("--json", arguments.is_json, "Print JSON");
-  app.footer("Example: camloc bench --map kitchen.cmap --sequence recordings/kitchen --camera 7scenes.toml --frames 300:600:5 \\\n"
-             "             --mode single --reference-opencv\n"
-             "Exit code: 0 done, 1 failed, 2 wrong usage or configuration.");
+  app.footer(
+      "Example: camloc bench --map kitchen.cmap --sequence recordings/kitchen --camera 7scenes.toml --frames 300:600:5 \\\n"
+      "             --mode single --reference-opencv\n"
+      "Exit code: 0 done, 1 failed, 2 wrong usage or configuration.");
   bool is_over = false;
   if (const int usage = camloc::tools::parse_command_line(app, argc, argv, &is_over); is_over) return usage;
   arguments.run.is_single = arguments.mode == "single";

@@ -58,7 +58,8 @@ struct OpencvReference::Impl {
   void gather_local() {
     local_descriptors.release();
     local_landmarks.clear();
-    for (const ProjectedLandmark& p : local.project(*last, 0.0F)) add(static_cast<std::uint32_t>(p.landmark), local_descriptors, local_landmarks);
+    for (const ProjectedLandmark& p : local.project(*last, 0.0F))
+      add(static_cast<std::uint32_t>(p.landmark), local_descriptors, local_landmarks);
   }
 
   const MapView* map;
@@ -83,7 +84,8 @@ ReferenceResult OpencvReference::process(const Frame& frame) {
   if (is_local) self.gather_local();  // not timed: a plain program would have its own way, and no cheaper one
 
   const std::int64_t started_ns = self.now_ns();
-  const cv::Mat image(frame.gray.height, frame.gray.width, CV_8U, const_cast<std::uint8_t*>(frame.gray.data), static_cast<std::size_t>(frame.gray.stride));
+  const cv::Mat image(frame.gray.height, frame.gray.width, CV_8U, const_cast<std::uint8_t*>(frame.gray.data),
+                      static_cast<std::size_t>(frame.gray.stride));
   std::vector<cv::KeyPoint> keypoints;
   cv::Mat descriptors;
   self.orb->detectAndCompute(image, cv::noArray(), keypoints, descriptors);
@@ -91,7 +93,8 @@ ReferenceResult OpencvReference::process(const Frame& frame) {
 
   const auto& landmarks = is_local ? self.local_landmarks : self.all_landmarks;
   std::vector<std::vector<cv::DMatch>> nearest;
-  if (!descriptors.empty() && landmarks.size() >= 2) self.matcher.knnMatch(descriptors, is_local ? self.local_descriptors : self.all_descriptors, nearest, 2);
+  if (!descriptors.empty() && landmarks.size() >= 2)
+    self.matcher.knnMatch(descriptors, is_local ? self.local_descriptors : self.all_descriptors, nearest, 2);
   std::vector<cv::Point3f> points;
   std::vector<cv::Point2f> pixels;
   for (const auto& pair : nearest) {
@@ -105,8 +108,9 @@ ReferenceResult OpencvReference::process(const Frame& frame) {
   self.last.reset();
   cv::Mat rotation, translation;
   std::vector<int> inliers;
-  const bool is_solved = points.size() >= 6 && cv::solvePnPRansac(points, pixels, self.K, self.distortion, rotation, translation, false,
-                                                                  self.options.ransac_iterations, static_cast<float>(self.options.max_error_px), 0.999, inliers);
+  const bool is_solved = points.size() >= 6 &&
+                         cv::solvePnPRansac(points, pixels, self.K, self.distortion, rotation, translation, false,
+                                            self.options.ransac_iterations, static_cast<float>(self.options.max_error_px), 0.999, inliers);
   if (is_solved && inliers.size() >= self.options.min_inliers) self.last = pose_from(rotation, translation);
   result.T_map_camera = self.last;
   result.extract_ns = extracted_ns - started_ns;

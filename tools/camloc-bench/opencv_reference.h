@@ -22,7 +22,7 @@ struct ReferenceOptions {
   double max_error_px = 5.0;
   double max_ratio = 0.8;
   std::size_t min_inliers = 15;
-  bool is_tracking = false;   ///< match only landmarks in view from its last pose, else all landmarks of the map
+  bool is_tracking = false;  ///< match only landmarks in view from its last pose, else all landmarks of the map
 };
 
 struct ReferenceResult {

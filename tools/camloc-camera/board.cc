@@ -20,12 +20,23 @@ constexpr std::size_t kMinCharucoCorners = 8;
 constexpr int kMaxSide = 60;
 
 constexpr std::array<std::pair<std::string_view, int>, 17> kDictionaries{{
-    {"DICT_4X4_50", cv::aruco::DICT_4X4_50},     {"DICT_4X4_100", cv::aruco::DICT_4X4_100},   {"DICT_4X4_250", cv::aruco::DICT_4X4_250},
-    {"DICT_4X4_1000", cv::aruco::DICT_4X4_1000}, {"DICT_5X5_50", cv::aruco::DICT_5X5_50},     {"DICT_5X5_100", cv::aruco::DICT_5X5_100},
-    {"DICT_5X5_250", cv::aruco::DICT_5X5_250},   {"DICT_5X5_1000", cv::aruco::DICT_5X5_1000}, {"DICT_6X6_50", cv::aruco::DICT_6X6_50},
-    {"DICT_6X6_100", cv::aruco::DICT_6X6_100},   {"DICT_6X6_250", cv::aruco::DICT_6X6_250},   {"DICT_6X6_1000", cv::aruco::DICT_6X6_1000},
-    {"DICT_7X7_50", cv::aruco::DICT_7X7_50},     {"DICT_7X7_100", cv::aruco::DICT_7X7_100},   {"DICT_7X7_250", cv::aruco::DICT_7X7_250},
-    {"DICT_7X7_1000", cv::aruco::DICT_7X7_1000}, {"DICT_ARUCO_ORIGINAL", cv::aruco::DICT_ARUCO_ORIGINAL},
+    {"DICT_4X4_50", cv::aruco::DICT_4X4_50},
+    {"DICT_4X4_100", cv::aruco::DICT_4X4_100},
+    {"DICT_4X4_250", cv::aruco::DICT_4X4_250},
+    {"DICT_4X4_1000", cv::aruco::DICT_4X4_1000},
+    {"DICT_5X5_50", cv::aruco::DICT_5X5_50},
+    {"DICT_5X5_100", cv::aruco::DICT_5X5_100},
+    {"DICT_5X5_250", cv::aruco::DICT_5X5_250},
+    {"DICT_5X5_1000", cv::aruco::DICT_5X5_1000},
+    {"DICT_6X6_50", cv::aruco::DICT_6X6_50},
+    {"DICT_6X6_100", cv::aruco::DICT_6X6_100},
+    {"DICT_6X6_250", cv::aruco::DICT_6X6_250},
+    {"DICT_6X6_1000", cv::aruco::DICT_6X6_1000},
+    {"DICT_7X7_50", cv::aruco::DICT_7X7_50},
+    {"DICT_7X7_100", cv::aruco::DICT_7X7_100},
+    {"DICT_7X7_250", cv::aruco::DICT_7X7_250},
+    {"DICT_7X7_1000", cv::aruco::DICT_7X7_1000},
+    {"DICT_ARUCO_ORIGINAL", cv::aruco::DICT_ARUCO_ORIGINAL},
 }};
 
 std::optional<double> parse_length_m(std::string_view text) {
@@ -51,7 +62,8 @@ bool parse_sides(std::string_view text, int least, int* columns, int* rows) {
 Status parse_charuco(const std::vector<std::string_view>& parts, const std::string& context, Board* board) {
   board->kind = Board::Kind::kCharuco;
   const std::optional<double> marker_m = parts.size() > 3 ? parse_length_m(parts[3]) : std::nullopt;
-  if (!marker_m || *marker_m >= board->square_m) return {ErrorCode::kInvalid, context + "the side of a marker is missing, or not smaller than that of a square"};
+  if (!marker_m || *marker_m >= board->square_m)
+    return {ErrorCode::kInvalid, context + "the side of a marker is missing, or not smaller than that of a square"};
   board->marker_m = *marker_m;
   const std::string_view name = parts.size() > 4 ? parts[4] : "DICT_5X5_100";
   const auto found = std::find_if(kDictionaries.begin(), kDictionaries.end(), [&](const auto& entry) { return entry.first == name; });
@@ -70,7 +82,8 @@ Status parse_charuco(const std::vector<std::string_view>& parts, const std::stri
 
 BoardCorners detect_chessboard(const cv::Mat& gray, const Board& board) {
   std::vector<cv::Point2f> found;
-  if (!cv::findChessboardCornersSB(gray, {board.columns, board.rows}, found, cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_ACCURACY)) return {};
+  if (!cv::findChessboardCornersSB(gray, {board.columns, board.rows}, found, cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_ACCURACY))
+    return {};
   BoardCorners corners;
   for (std::size_t i = 0; i < found.size(); ++i) {
     corners.ids.push_back(static_cast<int>(i));
@@ -109,7 +122,9 @@ Result<Board> parse_board(const std::string& text) {
   if (parts.size() > (is_charuco ? 5U : 3U)) return Status(ErrorCode::kInvalid, context + "too many parts");
   Board board;
   if (parts.size() < 2 || !parse_sides(parts[1], 3, &board.columns, &board.rows)) {
-    return Status(ErrorCode::kInvalid, context + (is_charuco ? "expected the number of squares as 7x5" : "expected the number of inner corners as 9x6") + ", each 3 to 60");
+    return Status(ErrorCode::kInvalid,
+                  context + (is_charuco ? "expected the number of squares as 7x5" : "expected the number of inner corners as 9x6") +
+                      ", each 3 to 60");
   }
   const std::optional<double> square_m = parts.size() > 2 ? parse_length_m(parts[2]) : std::nullopt;
   if (!square_m) return Status(ErrorCode::kInvalid, context + "expected the side of a square with its unit, as 25mm, 1 mm to 1 m");
@@ -128,8 +143,9 @@ struct BoardDetector::Markers {
 BoardDetector::BoardDetector(const Board& board) : board_(board) {
   if (board.kind != Board::Kind::kCharuco) return;
   markers_ = std::make_unique<Markers>();
-  markers_->board = cv::aruco::CharucoBoard::create(board.columns, board.rows, static_cast<float>(board.square_m), static_cast<float>(board.marker_m),
-                                                    cv::aruco::getPredefinedDictionary(board.dictionary));
+  markers_->board =
+      cv::aruco::CharucoBoard::create(board.columns, board.rows, static_cast<float>(board.square_m), static_cast<float>(board.marker_m),
+                                      cv::aruco::getPredefinedDictionary(board.dictionary));
   markers_->parameters = cv::aruco::DetectorParameters::create();
 }
 

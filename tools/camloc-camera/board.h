@@ -20,8 +20,8 @@ struct Board {
   Kind kind = Kind::kChessboard;
   int columns = 0, rows = 0;  ///< chessboard: inner corners; ChArUco: squares
   double square_m = 0;
-  double marker_m = 0;        ///< ChArUco only
-  int dictionary = 0;         ///< ChArUco only: cv::aruco::PREDEFINED_DICTIONARY_NAME
+  double marker_m = 0;  ///< ChArUco only
+  int dictionary = 0;   ///< ChArUco only: cv::aruco::PREDEFINED_DICTIONARY_NAME
 
   [[nodiscard]] int num_corners() const;
   /// Row by row; the index is the corner's id.

@@ -27,10 +27,12 @@ void test_on_held_out(const CalibrationViews& views, const CalibrationOptions& o
     const BoardCorners& corners = views.views[index].corners;
     const Result<Rigid3> T_camera_board = find_board(options.board, corners, calibration->camera.color);
     if (!T_camera_board) continue;
-    for (const Eigen::Vector2d& error : reprojection_errors(options.board, corners, calibration->camera.color, *T_camera_board)) squares += error.squaredNorm();
+    for (const Eigen::Vector2d& error : reprojection_errors(options.board, corners, calibration->camera.color, *T_camera_board))
+      squares += error.squaredNorm();
     calibration->num_held_out_corners += corners.ids.size();
   }
-  if (calibration->num_held_out_corners > 0) calibration->held_out_rms_px = std::sqrt(squares / static_cast<double>(calibration->num_held_out_corners));
+  if (calibration->num_held_out_corners > 0)
+    calibration->held_out_rms_px = std::sqrt(squares / static_cast<double>(calibration->num_held_out_corners));
 }
 
 void measure_depth(const CalibrationViews& views, const CalibrationOptions& options, Calibration* calibration) {
@@ -58,25 +60,28 @@ void measure_depth(const CalibrationViews& views, const CalibrationOptions& opti
 void warn_of_doubts(const CalibrationOptions& options, Calibration* calibration) {
   if (calibration->grid.covered() < kGoodCoverage) {
     const std::string sides = calibration->grid.bare_sides();
-    calibration->warnings.push_back(text_of("only %.0f %% of the image was covered; the lens is guessed elsewhere: show the board %s", 100 * calibration->grid.covered(),
+    calibration->warnings.push_back(text_of("only %.0f %% of the image was covered; the lens is guessed elsewhere: show the board %s",
+                                            100 * calibration->grid.covered(),
                                             sides.empty() ? "near the corners, too" : ("at " + sides + " of the image").c_str()));
   }
   if (calibration->num_held_out_corners > 0 && calibration->held_out_rms_px > kHeldOutRatio * calibration->lens.rms_px) {
-    calibration->warnings.push_back(text_of("views that were held out fit worse, %.2f px instead of %.2f; take more views", calibration->held_out_rms_px, calibration->lens.rms_px));
+    calibration->warnings.push_back(text_of("views that were held out fit worse, %.2f px instead of %.2f; take more views",
+                                            calibration->held_out_rms_px, calibration->lens.rms_px));
   }
   if (!calibration->depth || options.corrects_depth_unit) return;
   const DepthFit& depth = *calibration->depth;
   if (std::abs(depth.scale - 1) > std::max(3 * depth.scale_sigma, kMinScaleError)) {
-    calibration->warnings.push_back(text_of("depth is %.4f times the board's distance: measure a square of the board with a ruler; if it is right, correct the unit with "
-                                            "--correct-depth-unit",
-                                            depth.scale));
+    calibration->warnings.push_back(text_of(
+        "depth is %.4f times the board's distance: measure a square of the board with a ruler; if it is right, correct the unit with "
+        "--correct-depth-unit",
+        depth.scale));
   }
 }
 
 std::string format_lens(const LensFit& lens) {
   const Intrinsics& k = lens.intrinsics;
-  std::string text = text_of("  fx %10.3f +- %.3f px    cx %9.3f +- %.3f px\n  fy %10.3f +- %.3f px    cy %9.3f +- %.3f px\n", k.fx, lens.sigma[0], k.cx, lens.sigma[2],
-                             k.fy, lens.sigma[1], k.cy, lens.sigma[3]);
+  std::string text = text_of("  fx %10.3f +- %.3f px    cx %9.3f +- %.3f px\n  fy %10.3f +- %.3f px    cy %9.3f +- %.3f px\n", k.fx,
+                             lens.sigma[0], k.cx, lens.sigma[2], k.fy, lens.sigma[1], k.cy, lens.sigma[3]);
   static constexpr const char* kBrown[] = {"k1", "k2", "p1", "p2", "k3"};
   static constexpr const char* kEquidistant[] = {"k1", "k2", "k3", "k4"};
   const std::size_t count = k.lens == LensModel::kBrownConrady ? 5 : k.lens == LensModel::kEquidistant ? 4 : 0;
@@ -98,35 +103,39 @@ std::string format_views(const LensFit& lens, const CalibrationViews& views) {
   std::sort(order.begin(), order.end(), [&lens](std::size_t a, std::size_t b) { return lens.used[a] < lens.used[b]; });
   for (const std::size_t i : order) {
     const BoardView& view = views.views[lens.used[i]];
-    tools::append_text(&text, "  %5llu  %7zu  %6.3f  %10.2f\n", static_cast<unsigned long long>(view.sequence), view.corners.ids.size(), lens.view_rms_px[i],
-                       lens.T_camera_board[i].translation.norm());
+    tools::append_text(&text, "  %5llu  %7zu  %6.3f  %10.2f\n", static_cast<unsigned long long>(view.sequence), view.corners.ids.size(),
+                       lens.view_rms_px[i], lens.T_camera_board[i].translation.norm());
   }
   for (const std::size_t index : lens.dropped) {
-    tools::append_text(&text, "  %5llu  %7zu  dropped: does not fit the others\n", static_cast<unsigned long long>(views.views[index].sequence),
-                       views.views[index].corners.ids.size());
+    tools::append_text(&text, "  %5llu  %7zu  dropped: does not fit the others\n",
+                       static_cast<unsigned long long>(views.views[index].sequence), views.views[index].corners.ids.size());
   }
   return text;
 }
 
 std::string format_depth(const DepthFit& depth) {
-  std::string text = text_of("depth       %zu views from %.2f to %.2f m: measured = %.4f (+- %.4f) * true", depth.planes.size(), depth.near_m, depth.far_m, depth.scale,
-                             depth.scale_sigma);
+  std::string text = text_of("depth       %zu views from %.2f to %.2f m: measured = %.4f (+- %.4f) * true", depth.planes.size(),
+                             depth.near_m, depth.far_m, depth.scale, depth.scale_sigma);
   if (depth.has_offset) tools::append_text(&text, " %+.1f (+- %.1f) mm", 1e3 * depth.offset_m, 1e3 * depth.offset_sigma_m);
-  tools::append_text(&text, "\n            noise of a pixel: %.2f mm + %.2f mm * (z / m)^2\n", 1e3 * depth.noise.constant_m, 1e3 * depth.noise.quadratic_per_m);
+  tools::append_text(&text, "\n            noise of a pixel: %.2f mm + %.2f mm * (z / m)^2\n", 1e3 * depth.noise.constant_m,
+                     1e3 * depth.noise.quadratic_per_m);
   text += "     z m  measured - true mm  noise mm  pixels\n";
   const std::size_t step = std::max<std::size_t>(1, depth.planes.size() / 10);
   for (std::size_t i = 0; i < depth.planes.size(); i += step) {
     const DepthPlane& plane = depth.planes[i];
-    tools::append_text(&text, "  %6.2f  %18.1f  %8.2f  %6zu\n", plane.true_z_m, 1e3 * (plane.z_m - plane.true_z_m), 1e3 * plane.noise_m, plane.num_pixels);
+    tools::append_text(&text, "  %6.2f  %18.1f  %8.2f  %6zu\n", plane.true_z_m, 1e3 * (plane.z_m - plane.true_z_m), 1e3 * plane.noise_m,
+                       plane.num_pixels);
   }
   return text;
 }
 
 std::string format_extrinsic(const ExtrinsicFit& fit) {
   const Eigen::Vector3d t = 1e3 * fit.T_color_depth.translation, r = log_so3(fit.T_color_depth.rotation);
-  return text_of("depth camera at %.1f %.1f %.1f mm (+- %.1f) of the colour camera, turned by %.2f %.2f %.2f deg (+- %.2f); planes agree to %.1f mm and %.2f deg\n", t.x(), t.y(),
-                 t.z(), 1e3 * fit.translation_sigma_m, tools::degrees(r.x()), tools::degrees(r.y()), tools::degrees(r.z()), tools::degrees(fit.rotation_sigma_rad),
-                 1e3 * fit.distance_rms_m, tools::degrees(fit.normal_rms_rad));
+  return text_of(
+      "depth camera at %.1f %.1f %.1f mm (+- %.1f) of the colour camera, turned by %.2f %.2f %.2f deg (+- %.2f); planes agree to %.1f mm "
+      "and %.2f deg\n",
+      t.x(), t.y(), t.z(), 1e3 * fit.translation_sigma_m, tools::degrees(r.x()), tools::degrees(r.y()), tools::degrees(r.z()),
+      tools::degrees(fit.rotation_sigma_rad), 1e3 * fit.distance_rms_m, tools::degrees(fit.normal_rms_rad));
 }
 
 }  // namespace
@@ -165,8 +174,11 @@ Result<CalibrationViews> collect_views(FrameSource* source, const CalibrationOpt
 
 Result<Calibration> calibrate(const CalibrationViews& views, const CalibrationOptions& options) {
   if (views.views.empty()) {
-    return Status(ErrorCode::kInvalid, text_of("the board was seen in none of %llu images; check --board, light, and that all of the board with its white margin is in view",
-                                               static_cast<unsigned long long>(views.num_frames)));
+    return Status(
+        ErrorCode::kInvalid,
+        text_of(
+            "the board was seen in none of %llu images; check --board, light, and that all of the board with its white margin is in view",
+            static_cast<unsigned long long>(views.num_frames)));
   }
   const ViewChoice choice = choose_views(options.board, views.views, views.width, views.height, options.max_views, options.max_held_out);
   std::vector<BoardView> chosen;
@@ -196,10 +208,12 @@ Result<Calibration> calibrate(const CalibrationViews& views, const CalibrationOp
 
 std::string format_report(const Calibration& calibration, const CalibrationViews& views) {
   const LensFit& lens = calibration.lens;
-  std::string text = text_of("images      %llu, the board in %llu, %zu of them unlike each other\n", static_cast<unsigned long long>(views.num_frames),
-                             static_cast<unsigned long long>(views.num_with_board), views.views.size());
-  tools::append_text(&text, "views       %zu used, %zu dropped, %zu held out; %.0f %% of the image covered, tilt up to %.0f deg\n", lens.used.size(), lens.dropped.size(),
-                     calibration.held_out.size(), 100 * calibration.grid.covered(), tools::degrees(lens.max_tilt_rad));
+  std::string text =
+      text_of("images      %llu, the board in %llu, %zu of them unlike each other\n", static_cast<unsigned long long>(views.num_frames),
+              static_cast<unsigned long long>(views.num_with_board), views.views.size());
+  tools::append_text(&text, "views       %zu used, %zu dropped, %zu held out; %.0f %% of the image covered, tilt up to %.0f deg\n",
+                     lens.used.size(), lens.dropped.size(), calibration.held_out.size(), 100 * calibration.grid.covered(),
+                     tools::degrees(lens.max_tilt_rad));
   tools::append_text(&text, "error       %.3f px rms", lens.rms_px);
   if (calibration.num_held_out_corners > 0) tools::append_text(&text, ", %.3f px on the views held out", calibration.held_out_rms_px);
   text += "\nlens (standard deviations)\n" + format_lens(lens) + format_views(lens, views);
@@ -211,12 +225,16 @@ std::string format_report(const Calibration& calibration, const CalibrationViews
 
 std::string format_camera_file(const Calibration& calibration, const std::string& board_text) {
   const LensFit& lens = calibration.lens;
-  std::string text = text_of("# camloc camera calibrate --board %s: %zu views, %.3f px rms", board_text.c_str(), lens.used.size(), lens.rms_px);
-  if (calibration.num_held_out_corners > 0) tools::append_text(&text, ", %.3f px on %zu views held out", calibration.held_out_rms_px, calibration.held_out.size());
-  tools::append_text(&text, "\n# standard deviations: fx %.3f fy %.3f cx %.3f cy %.3f px\n", lens.sigma[0], lens.sigma[1], lens.sigma[2], lens.sigma[3]);
+  std::string text =
+      text_of("# camloc camera calibrate --board %s: %zu views, %.3f px rms", board_text.c_str(), lens.used.size(), lens.rms_px);
+  if (calibration.num_held_out_corners > 0)
+    tools::append_text(&text, ", %.3f px on %zu views held out", calibration.held_out_rms_px, calibration.held_out.size());
+  tools::append_text(&text, "\n# standard deviations: fx %.3f fy %.3f cx %.3f cy %.3f px\n", lens.sigma[0], lens.sigma[1], lens.sigma[2],
+                     lens.sigma[3]);
   if (calibration.depth) {
-    tools::append_text(&text, "# depth: measured = %.4f (+- %.4f) * true %+.1f mm, %.2f to %.2f m\n", calibration.depth->scale, calibration.depth->scale_sigma,
-                       1e3 * calibration.depth->offset_m, calibration.depth->near_m, calibration.depth->far_m);
+    tools::append_text(&text, "# depth: measured = %.4f (+- %.4f) * true %+.1f mm, %.2f to %.2f m\n", calibration.depth->scale,
+                       calibration.depth->scale_sigma, 1e3 * calibration.depth->offset_m, calibration.depth->near_m,
+                       calibration.depth->far_m);
   }
   return text + format_camera_toml(calibration.camera);
 }

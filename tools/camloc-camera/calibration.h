@@ -20,11 +20,11 @@ struct CalibrationOptions {
   Board board;
   LensFitOptions lens;
   std::size_t max_views = 40, max_held_out = 15;
-  std::size_t max_candidates = 150;      ///< different views that are collected
-  double min_shift = 0.03;               ///< of the image's width, by which a view must differ from the others
-  std::optional<RgbdCamera> known;       ///< name, depth intrinsics, unit: what is not measured here
+  std::size_t max_candidates = 150;  ///< different views that are collected
+  double min_shift = 0.03;           ///< of the image's width, by which a view must differ from the others
+  std::optional<RgbdCamera> known;   ///< name, depth intrinsics, unit: what is not measured here
   bool wants_depth = true;
-  bool corrects_depth_unit = false;      ///< divide the depth unit by the measured scale
+  bool corrects_depth_unit = false;  ///< divide the depth unit by the measured scale
 };
 
 struct CalibrationViews {
@@ -36,11 +36,11 @@ struct CalibrationViews {
 
 struct Calibration {
   RgbdCamera camera;
-  LensFit lens;                          ///< indices into CalibrationViews::views
+  LensFit lens;  ///< indices into CalibrationViews::views
   std::vector<std::size_t> held_out;
   double held_out_rms_px = 0;
   std::size_t num_held_out_corners = 0;
-  CoverageGrid grid;                     ///< of the views used
+  CoverageGrid grid;  ///< of the views used
   std::optional<DepthFit> depth;
   std::optional<ExtrinsicFit> extrinsic;
   std::vector<std::string> warnings;
@@ -51,7 +51,8 @@ using CollectProgress = std::function<bool(const CalibrationViews&)>;
 
 /// Reads frames until the source ends, `progress` says so, or there are enough views. A frame that cannot be read is passed over.
 /// Errors: those of the source before its first frame.
-[[nodiscard]] Result<CalibrationViews> collect_views(FrameSource* source, const CalibrationOptions& options, const CollectProgress& progress);
+[[nodiscard]] Result<CalibrationViews> collect_views(FrameSource* source, const CalibrationOptions& options,
+                                                     const CollectProgress& progress);
 
 /// Errors: kInvalid with what to show the camera.
 [[nodiscard]] Result<Calibration> calibrate(const CalibrationViews& views, const CalibrationOptions& options);

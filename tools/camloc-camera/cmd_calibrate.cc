@@ -49,8 +49,8 @@ class Display {
       for (const BoardView& view : views.views) grid_.add(view.corners);
     }
     const std::string bare = num_views_ == 0 ? "" : grid_.bare_sides();
-    line_.show(views.num_frames, tools::text_of("views %zu  covered %.0f %%%s%s", num_views_, num_views_ == 0 ? 0 : 100 * grid_.covered(), bare.empty() ? "" : "  show it at ",
-                                                bare.c_str()));
+    line_.show(views.num_frames, tools::text_of("views %zu  covered %.0f %%%s%s", num_views_, num_views_ == 0 ? 0 : 100 * grid_.covered(),
+                                                bare.empty() ? "" : "  show it at ", bare.c_str()));
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     return !tools::InterruptGuard::is_interrupted() && (max_seconds_ <= 0 || seconds < max_seconds_);
   }
@@ -64,7 +64,8 @@ class Display {
 };
 
 Status write_results(const Arguments& arguments, const Calibration& calibration, const CalibrationViews& views) {
-  if (Status status = tools::write_text_file(arguments.out_path, format_camera_file(calibration, arguments.board_text)); !status) return status;
+  if (Status status = tools::write_text_file(arguments.out_path, format_camera_file(calibration, arguments.board_text)); !status)
+    return status;
   if (arguments.png_path.empty()) return Status::ok();
   return write_png(arguments.png_path, draw_coverage({&arguments.options.board, views.views, &calibration.lens, calibration.held_out}));
 }
@@ -82,7 +83,8 @@ Status run(Arguments arguments) {
   if (!board) return board.status();
   arguments.options.board = *board;
   arguments.options.wants_depth = !arguments.skips_depth;
-  if (arguments.source_url.empty() == arguments.sequence_path.empty()) return {ErrorCode::kInvalid, "give one of --source URL and --sequence DIR"};
+  if (arguments.source_url.empty() == arguments.sequence_path.empty())
+    return {ErrorCode::kInvalid, "give one of --source URL and --sequence DIR"};
   for (const auto& [option, path] : {std::pair{"--out", arguments.out_path}, std::pair{"--png", arguments.png_path}}) {
     if (path.empty() && std::string(option) == "--png") continue;
     if (Status status = tools::check_output_path(option, path); !status) return status;
@@ -117,15 +119,21 @@ void add_calibrate_command(CLI::App& app, int& exit_code) {
   command->footer(kFooter);
   command->add_option("--source", arguments->source_url, "Camera that looks at the board");
   command->add_option("--sequence", arguments->sequence_path, "Recording of the board instead, in TUM or 7-Scenes layout");
-  command->add_option("--board", arguments->board_text, "chessboard:9x6:25mm (inner corners) or charuco:7x5:40mm:30mm:DICT_5X5_100 (squares, as OpenCV 4.6 draws them)")->required();
+  command
+      ->add_option("--board", arguments->board_text,
+                   "chessboard:9x6:25mm (inner corners) or charuco:7x5:40mm:30mm:DICT_5X5_100 (squares, as OpenCV 4.6 draws them)")
+      ->required();
   command->add_option("--out", arguments->out_path, "Camera file to write")->required();
   command->add_option("--png", arguments->png_path, "Picture of the coverage and the errors");
-  command->add_option("--camera", arguments->camera_path, "What is known already: depth intrinsics, unit, name (default: what the source knows)");
+  command->add_option("--camera", arguments->camera_path,
+                      "What is known already: depth intrinsics, unit, name (default: what the source knows)");
   const std::map<std::string, LensModel> lenses{
       {"brown_conrady", LensModel::kBrownConrady}, {"equidistant", LensModel::kEquidistant}, {"pinhole", LensModel::kPinhole}};
-  command->add_option("--lens", arguments->options.lens.lens, "brown_conrady (default), equidistant for wide angles, pinhole")->transform(CLI::CheckedTransformer(lenses));
+  command->add_option("--lens", arguments->options.lens.lens, "brown_conrady (default), equidistant for wide angles, pinhole")
+      ->transform(CLI::CheckedTransformer(lenses));
   command->add_option("--max-views", arguments->options.max_views, "Views to calibrate with (default 40)")->check(CLI::Range(8, 1000));
-  command->add_option("--seconds", arguments->max_seconds, "Look for so long (default: to the end of the recording, or Ctrl-C)")->check(CLI::PositiveNumber);
+  command->add_option("--seconds", arguments->max_seconds, "Look for so long (default: to the end of the recording, or Ctrl-C)")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--no-depth", arguments->skips_depth, "Leave depth alone");
   command->add_flag("--correct-depth-unit", arguments->options.corrects_depth_unit, "Divide the depth unit by the scale that was measured");
   command->callback([arguments, &exit_code] { exit_code = report(run(*arguments)); });

@@ -13,7 +13,8 @@ namespace {
 constexpr int kMinWidth = 1200, kLegendHeight = 110;
 constexpr double kErrorScale = 100;
 // Red, green, blue: the picture is never shown by OpenCV.
-const cv::Scalar kCorner(70, 160, 255), kHeldOut(120, 230, 120), kDropped(160, 160, 160), kError(255, 90, 60), kText(235, 235, 235), kGrid(70, 70, 70);
+const cv::Scalar kCorner(70, 160, 255), kHeldOut(120, 230, 120), kDropped(160, 160, 160), kError(255, 90, 60), kText(235, 235, 235),
+    kGrid(70, 70, 70);
 
 class Canvas {
  public:
@@ -38,12 +39,18 @@ class Canvas {
   }
   void draw_corners(const BoardCorners& corners, const std::vector<Eigen::Vector2d>& errors_px, const cv::Scalar& color) {
     for (std::size_t i = 0; i < corners.pixels.size(); ++i) {
-      if (i < errors_px.size()) cv::line(image_, to_canvas(corners.pixels[i]), to_canvas(corners.pixels[i] + kErrorScale / scale_ * errors_px[i]), kError, 1, cv::LINE_AA);
+      if (i < errors_px.size())
+        cv::line(image_, to_canvas(corners.pixels[i]), to_canvas(corners.pixels[i] + kErrorScale / scale_ * errors_px[i]), kError, 1,
+                 cv::LINE_AA);
       cv::circle(image_, to_canvas(corners.pixels[i]), 2, color, cv::FILLED, cv::LINE_AA);
     }
   }
-  void draw_principal_point(const Intrinsics& k) { cv::drawMarker(image_, to_canvas({k.cx, k.cy}), kText, cv::MARKER_CROSS, 24, 1, cv::LINE_AA); }
-  void write_legend(int line, const std::string& text, const cv::Scalar& color) { write(text, {12, size_.height + 24 + 24 * line}, 0.55, color); }
+  void draw_principal_point(const Intrinsics& k) {
+    cv::drawMarker(image_, to_canvas({k.cx, k.cy}), kText, cv::MARKER_CROSS, 24, 1, cv::LINE_AA);
+  }
+  void write_legend(int line, const std::string& text, const cv::Scalar& color) {
+    write(text, {12, size_.height + 24 + 24 * line}, 0.55, color);
+  }
   [[nodiscard]] ColorImage take() const {
     ColorImage image{std::vector<std::uint8_t>(image_.total() * 3), image_.cols, image_.rows};
     std::copy_n(image_.ptr<std::uint8_t>(), image.pixels.size(), image.pixels.begin());
@@ -82,8 +89,11 @@ ColorImage draw_coverage(const CoveragePicture& picture) {
     canvas.draw_corners(corners, reprojection_errors(*picture.board, corners, k, fit.T_camera_board[i]), kCorner);
   }
   canvas.draw_principal_point(k);
-  canvas.write_legend(0, tools::text_of("blue: %zu views, rms %.3f px; red: errors, 1 px drawn %.0f px long; numbers: corners in a cell, %.0f %% of the cells", fit.used.size(),
-                                        fit.rms_px, kErrorScale, 100 * grid.covered()), kCorner);
+  canvas.write_legend(
+      0,
+      tools::text_of("blue: %zu views, rms %.3f px; red: errors, 1 px drawn %.0f px long; numbers: corners in a cell, %.0f %% of the cells",
+                     fit.used.size(), fit.rms_px, kErrorScale, 100 * grid.covered()),
+      kCorner);
   canvas.write_legend(1, tools::text_of("green: %zu views held out", picture.held_out.size()), kHeldOut);
   canvas.write_legend(2, tools::text_of("grey: %zu views dropped because they do not fit the others", fit.dropped.size()), kDropped);
   canvas.write_legend(3, tools::text_of("cross: principal point %.1f %.1f; fx %.2f fy %.2f", k.cx, k.cy, k.fx, k.fy), kText);

@@ -13,12 +13,12 @@ namespace camloc::camera_tool {
 namespace {
 
 constexpr std::size_t kMinPixels = 200, kMinPlanes = 5;
-constexpr double kMaxError = 0.2;         // relative: what is farther off is not the board
-constexpr double kMinDepthRange = 1.5;    // farthest over nearest, to tell scale from offset
-constexpr double kMinPlaneRange = 1.3;    // the same for planes and the extrinsic
-constexpr double kMinNormalSpread = 0.01; // smallest mean squared component of the normals: about 6 degrees of tilt to both sides
+constexpr double kMaxError = 0.2;          // relative: what is farther off is not the board
+constexpr double kMinDepthRange = 1.5;     // farthest over nearest, to tell scale from offset
+constexpr double kMinPlaneRange = 1.3;     // the same for planes and the extrinsic
+constexpr double kMinNormalSpread = 0.01;  // smallest mean squared component of the normals: about 6 degrees of tilt to both sides
 constexpr double kMadToSigma = 1.4826;
-constexpr double kStep = 0.01;            // relative; a Kinect's steps are 0.3 % of the distance at 1 m, 1 % at 4 m
+constexpr double kStep = 0.01;                       // relative; a Kinect's steps are 0.3 % of the distance at 1 m, 1 % at 4 m
 constexpr double kWiderMargin = 1.0, kMargin = 0.3;  // squares within the outermost corners
 
 /// One pixel of depth on the board.
@@ -51,7 +51,8 @@ struct BoardInDepth {
   }
 };
 
-std::vector<Sample> samples_on(const BoardInDepth& board, const Image<std::uint16_t>& depth, const RgbdCamera& camera, const UndistortionTable& rays) {
+std::vector<Sample> samples_on(const BoardInDepth& board, const Image<std::uint16_t>& depth, const RgbdCamera& camera,
+                               const UndistortionTable& rays) {
   std::vector<Sample> samples;
   for (int y = 0; y < depth.height; ++y) {
     for (int x = 0; x < depth.width; ++x) {
@@ -112,8 +113,8 @@ struct SeenPlane {
   DepthPlane plane;
 };
 
-std::vector<SeenPlane> see_planes(const Board& board, std::span<const BoardView> views, std::span<const Rigid3> T_color_board, const RgbdCamera& camera,
-                                  double margin_squares) {
+std::vector<SeenPlane> see_planes(const Board& board, std::span<const BoardView> views, std::span<const Rigid3> T_color_board,
+                                  const RgbdCamera& camera, double margin_squares) {
   const UndistortionTable rays(camera.depth);
   std::vector<SeenPlane> seen;
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -165,7 +166,8 @@ DepthNoise fit_noise(const std::vector<DepthPlane>& planes) {
 }
 
 double largest_sigma(const Eigen::Matrix3d& covariance) {
-  return std::sqrt(std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff()));
+  return std::sqrt(
+      std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff()));
 }
 
 /// A plane in both cameras: n . p = distance, the normals turned away from the camera.
@@ -190,7 +192,8 @@ PlanePair pair_up(const SeenPlane& seen, const Rigid3& T_color_board) {
 /// From color_distance = depth_distance / scale + color_normal . translation. The scale is left at 1 where the board was always at
 /// about the same distance, because it cannot be told from the translation then.
 void solve_translation(const std::vector<PlanePair>& pairs, ExtrinsicFit* fit) {
-  const auto [nearest, farthest] = std::minmax_element(pairs.begin(), pairs.end(), [](const PlanePair& a, const PlanePair& b) { return a.depth_distance_m < b.depth_distance_m; });
+  const auto [nearest, farthest] = std::minmax_element(
+      pairs.begin(), pairs.end(), [](const PlanePair& a, const PlanePair& b) { return a.depth_distance_m < b.depth_distance_m; });
   const bool has_scale = farthest->depth_distance_m > kMinPlaneRange * nearest->depth_distance_m;
   Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
   Eigen::Vector4d b = Eigen::Vector4d::Zero();
@@ -222,7 +225,8 @@ Result<ExtrinsicFit> solve_planes(const std::vector<PlanePair>& pairs) {
   }
   const auto count = static_cast<double>(pairs.size());
   if (Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread / count, Eigen::EigenvaluesOnly).eigenvalues()[0] < kMinNormalSpread) {
-    return {ErrorCode::kInvalid, "the board was never tilted enough to both sides to tell where the depth camera is; tilt it left, right, up and down"};
+    return {ErrorCode::kInvalid,
+            "the board was never tilted enough to both sides to tell where the depth camera is; tilt it left, right, up and down"};
   }
   ExtrinsicFit fit;
   fit.T_color_depth.rotation = nearest_rotation(cross);
@@ -241,7 +245,8 @@ Status too_few_planes(std::size_t count) {
 
 }  // namespace
 
-Result<DepthFit> fit_depth(const Board& board, std::span<const BoardView> views, std::span<const Rigid3> T_color_board, const RgbdCamera& camera) {
+Result<DepthFit> fit_depth(const Board& board, std::span<const BoardView> views, std::span<const Rigid3> T_color_board,
+                           const RgbdCamera& camera) {
   DepthFit fit;
   for (const SeenPlane& seen : see_planes(board, views, T_color_board, camera, kMargin)) fit.planes.push_back(seen.plane);
   if (fit.planes.size() < kMinPlanes) return too_few_planes(fit.planes.size());
@@ -255,7 +260,8 @@ Result<DepthFit> fit_depth(const Board& board, std::span<const BoardView> views,
   return fit;
 }
 
-Result<ExtrinsicFit> fit_extrinsic(const Board& board, std::span<const BoardView> views, std::span<const Rigid3> T_color_board, const RgbdCamera& camera) {
+Result<ExtrinsicFit> fit_extrinsic(const Board& board, std::span<const BoardView> views, std::span<const Rigid3> T_color_board,
+                                   const RgbdCamera& camera) {
   RgbdCamera guess = camera;
   Result<ExtrinsicFit> fit = too_few_planes(0);
   for (int round = 0; round < 4; ++round) {

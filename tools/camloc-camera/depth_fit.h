@@ -22,9 +22,9 @@ namespace camloc::camera_tool {
 /// The board in one depth image.
 struct DepthPlane {
   Eigen::Vector3d inverse = Eigen::Vector3d::Zero();  ///< 1/z = inverse . (x/z, y/z, 1); normal over distance of the plane
-  double z_m = 0;           ///< measured, at the middle of the pixels used
-  double true_z_m = 0;      ///< of the board by its corners, at the same place
-  double noise_m = 0;       ///< standard deviation of single pixels about the plane
+  double z_m = 0;                                     ///< measured, at the middle of the pixels used
+  double true_z_m = 0;                                ///< of the board by its corners, at the same place
+  double noise_m = 0;                                 ///< standard deviation of single pixels about the plane
   std::size_t num_pixels = 0;
 };
 
@@ -33,8 +33,8 @@ struct DepthFit {
   double scale = 1, scale_sigma = 0;        ///< measured z = scale * true z + offset
   double offset_m = 0, offset_sigma_m = 0;  ///< 0 where the range of distances is too short to tell it from the scale
   bool has_offset = false;
-  DepthNoise noise;                         ///< of single pixels
-  double near_m = 0, far_m = 0;             ///< distances of the board
+  DepthNoise noise;              ///< of single pixels
+  double near_m = 0, far_m = 0;  ///< distances of the board
 };
 
 struct ExtrinsicFit {
@@ -46,11 +46,12 @@ struct ExtrinsicFit {
 
 /// `T_color_board` belongs to `views` one by one; views without depth are left out. kInvalid: fewer than five show the board's
 /// depth.
-[[nodiscard]] Result<DepthFit> fit_depth(const Board& board, std::span<const BoardView> views, std::span<const Rigid3> T_color_board, const RgbdCamera& camera);
+[[nodiscard]] Result<DepthFit> fit_depth(const Board& board, std::span<const BoardView> views, std::span<const Rigid3> T_color_board,
+                                         const RgbdCamera& camera);
 
 /// Starts from camera.T_color_depth, which may be off by some centimetres and degrees. kInvalid: too few planes, or all of them
 /// nearly parallel.
-[[nodiscard]] Result<ExtrinsicFit> fit_extrinsic(const Board& board, std::span<const BoardView> views, std::span<const Rigid3> T_color_board,
-                                                 const RgbdCamera& camera);
+[[nodiscard]] Result<ExtrinsicFit> fit_extrinsic(const Board& board, std::span<const BoardView> views,
+                                                 std::span<const Rigid3> T_color_board, const RgbdCamera& camera);
 
 }  // namespace camloc::camera_tool

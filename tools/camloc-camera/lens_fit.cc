@@ -60,8 +60,8 @@ void solve_brown(const Correspondences& points, bool has_lens, bool has_k3, Lens
   std::vector<cv::Mat> rotations, translations;
   int flags = has_k3 ? 0 : cv::CALIB_FIX_K3;
   if (!has_lens) flags |= cv::CALIB_FIX_K1 | cv::CALIB_FIX_K2 | cv::CALIB_FIX_K3 | cv::CALIB_ZERO_TANGENT_DIST;
-  cv::calibrateCamera(points.board, points.image, {k.width, k.height}, matrix, distortion, rotations, translations, sigma, pose_sigma, view_errors, flags,
-                      {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 100, 1e-10});
+  cv::calibrateCamera(points.board, points.image, {k.width, k.height}, matrix, distortion, rotations, translations, sigma, pose_sigma,
+                      view_errors, flags, {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 100, 1e-10});
   set_camera_matrix(matrix, &k);
   k.lens = has_lens ? LensModel::kBrownConrady : LensModel::kPinhole;
   for (int i = 0; i < 5; ++i) k.distortion[static_cast<std::size_t>(i)] = has_lens ? distortion.at<double>(i) : 0;
@@ -73,7 +73,8 @@ void solve_brown(const Correspondences& points, bool has_lens, bool has_k3, Lens
 }
 
 /// OpenCV gives no deviations for this model: the inverse of the normal equations, the poses of the board eliminated.
-void equidistant_sigmas(const Correspondences& points, const std::vector<cv::Mat>& rotations, const std::vector<cv::Mat>& translations, LensFit* fit) {
+void equidistant_sigmas(const Correspondences& points, const std::vector<cv::Mat>& rotations, const std::vector<cv::Mat>& translations,
+                        LensFit* fit) {
   using Matrix8d = Eigen::Matrix<double, 8, 8>;
   const Intrinsics& k = fit->intrinsics;
   const cv::Vec4d distortion(k.distortion[0], k.distortion[1], k.distortion[2], k.distortion[3]);
@@ -85,13 +86,15 @@ void equidistant_sigmas(const Correspondences& points, const std::vector<cv::Mat
     std::vector<cv::Point3d> board;
     for (const cv::Point3f& p : points.board[view]) board.emplace_back(p.x, p.y, p.z);
     cv::fisheye::projectPoints(board, projected, rotations[view], translations[view], camera_matrix(k), distortion, 0, jacobian);
-    const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> J(jacobian.ptr<double>(), jacobian.rows, jacobian.cols);
+    const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> J(jacobian.ptr<double>(), jacobian.rows,
+                                                                                                     jacobian.cols);
     const Eigen::MatrixXd lens = J.leftCols(8), pose = J.middleCols(8, 6);  // f c k | rotation translation | skew
     const Eigen::MatrixXd cross = lens.transpose() * pose;
     information += lens.transpose() * lens - cross * (pose.transpose() * pose).ldlt().solve(cross.transpose());
     for (int i = 0; i < static_cast<int>(board.size()); ++i) {
       const cv::Vec2d p = projected.at<cv::Vec2d>(i);
-      sum += std::pow(p[0] - points.image[view][static_cast<std::size_t>(i)].x, 2) + std::pow(p[1] - points.image[view][static_cast<std::size_t>(i)].y, 2);
+      sum += std::pow(p[0] - points.image[view][static_cast<std::size_t>(i)].x, 2) +
+             std::pow(p[1] - points.image[view][static_cast<std::size_t>(i)].y, 2);
     }
     num_values += 2.0 * static_cast<double>(board.size()) - 6;
   }
@@ -154,7 +157,8 @@ Status solve(const Board& board, std::span<const BoardView> views, LensModel len
     return {ErrorCode::kInvalid, "the views contradict each other or are all alike; show the board at other places and angles"};
   }
   if (fit->intrinsics.validate()) return Status::ok();
-  return {ErrorCode::kInvalid, "the views do not determine a lens; tilt the board 20 to 45 degrees to all sides, and show it near and in the corners"};
+  return {ErrorCode::kInvalid,
+          "the views do not determine a lens; tilt the board 20 to 45 degrees to all sides, and show it near and in the corners"};
 }
 
 void measure(const Board& board, std::span<const BoardView> views, LensFit* fit) {
@@ -186,13 +190,16 @@ bool drop_worst(const LensFitOptions& options, std::size_t num_views, LensFit* f
 
 Status check_determined(const LensFit& fit, const LensFitOptions& options) {
   if (fit.max_tilt_rad < options.min_tilt_rad) {
-    return {ErrorCode::kInvalid, tools::text_of("the board was never tilted by more than %.0f degrees, so focal length and distance cannot be told apart; "
-                                                "tilt it 20 to 45 degrees to each side",
-                                                tools::degrees(fit.max_tilt_rad))};
+    return {ErrorCode::kInvalid,
+            tools::text_of("the board was never tilted by more than %.0f degrees, so focal length and distance cannot be told apart; "
+                           "tilt it 20 to 45 degrees to each side",
+                           tools::degrees(fit.max_tilt_rad))};
   }
   const double focal_sigma = std::max(fit.sigma[0] / fit.intrinsics.fx, fit.sigma[1] / fit.intrinsics.fy);
   if (!(focal_sigma <= options.max_focal_sigma)) {
-    return {ErrorCode::kInvalid, tools::text_of("the views leave the focal length open by %.1f %%; add views with the board tilted, near, and in the corners", 100 * focal_sigma)};
+    return {ErrorCode::kInvalid,
+            tools::text_of("the views leave the focal length open by %.1f %%; add views with the board tilted, near, and in the corners",
+                           100 * focal_sigma)};
   }
   return Status::ok();
 }
@@ -201,7 +208,8 @@ Status check_determined(const LensFit& fit, const LensFitOptions& options) {
 
 Result<LensFit> fit_lens(const Board& board, std::span<const BoardView> views, int width, int height, const LensFitOptions& options) {
   const auto too_few = [&](std::size_t count) {
-    return Status(ErrorCode::kInvalid, tools::text_of("%zu views of the board, %zu are needed; show it at more places and angles", count, options.min_views));
+    return Status(ErrorCode::kInvalid,
+                  tools::text_of("%zu views of the board, %zu are needed; show it at more places and angles", count, options.min_views));
   };
   if (views.size() < options.min_views) return too_few(views.size());
   LensFit fit;
@@ -231,11 +239,13 @@ Result<Rigid3> find_board(const Board& board, const BoardCorners& corners, const
     cv::Mat rotation, translation;
     if (!cv::solvePnP(points, normalized, cv::Matx33d::eye(), cv::noArray(), rotation, translation)) return failed;
     const Rigid3 T_camera_board = to_rigid(rotation, translation);
-    return T_camera_board.translation.allFinite() && T_camera_board.translation.z() > 0 ? Result<Rigid3>(T_camera_board) : Result<Rigid3>(failed);
+    return T_camera_board.translation.allFinite() && T_camera_board.translation.z() > 0 ? Result<Rigid3>(T_camera_board)
+                                                                                        : Result<Rigid3>(failed);
   } catch (const cv::Exception&) { return failed; }
 }
 
-std::vector<Eigen::Vector2d> reprojection_errors(const Board& board, const BoardCorners& corners, const Intrinsics& intrinsics, const Rigid3& T_camera_board) {
+std::vector<Eigen::Vector2d> reprojection_errors(const Board& board, const BoardCorners& corners, const Intrinsics& intrinsics,
+                                                 const Rigid3& T_camera_board) {
   std::vector<Eigen::Vector2d> errors;
   for (std::size_t i = 0; i < corners.ids.size(); ++i) {
     const Eigen::Vector2d p = board.corner_m(corners.ids[i]);

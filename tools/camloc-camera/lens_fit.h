@@ -29,10 +29,10 @@ struct BoardView {
 struct LensFitOptions {
   LensModel lens = LensModel::kBrownConrady;  ///< kPinhole: without distortion
   std::size_t min_views = 8;
-  double max_view_ratio = 2.5;   ///< a view with more than so many times the median error, and half a pixel, is dropped
-  double max_dropped = 0.25;     ///< of the views; more than that is no matter of single views
-  double min_tilt_rad = 0.17;    ///< some view must show the board at such an angle, else focal length and distance are one
-  double max_focal_sigma = 0.01; ///< relative; above it the answer is not worth writing
+  double max_view_ratio = 2.5;    ///< a view with more than so many times the median error, and half a pixel, is dropped
+  double max_dropped = 0.25;      ///< of the views; more than that is no matter of single views
+  double min_tilt_rad = 0.17;     ///< some view must show the board at such an angle, else focal length and distance are one
+  double max_focal_sigma = 0.01;  ///< relative; above it the answer is not worth writing
 };
 
 struct LensFit {
@@ -47,14 +47,15 @@ struct LensFit {
 };
 
 /// Errors: kInvalid with what to do: too few views, all of them from the front, focal length not determined.
-[[nodiscard]] Result<LensFit> fit_lens(const Board& board, std::span<const BoardView> views, int width, int height, const LensFitOptions& options = {});
+[[nodiscard]] Result<LensFit> fit_lens(const Board& board, std::span<const BoardView> views, int width, int height,
+                                       const LensFitOptions& options = {});
 
 /// The board's pose by its corners; kInvalid where they do not give one.
 [[nodiscard]] Result<Rigid3> find_board(const Board& board, const BoardCorners& corners, const Intrinsics& intrinsics);
 
 /// Distances of the corners from where the pose puts them, pixels: measured minus predicted.
-[[nodiscard]] std::vector<Eigen::Vector2d> reprojection_errors(const Board& board, const BoardCorners& corners, const Intrinsics& intrinsics,
-                                                               const Rigid3& T_camera_board);
+[[nodiscard]] std::vector<Eigen::Vector2d> reprojection_errors(const Board& board, const BoardCorners& corners,
+                                                               const Intrinsics& intrinsics, const Rigid3& T_camera_board);
 /// Root of the mean squared length, 0 for none.
 [[nodiscard]] double rms(std::span<const Eigen::Vector2d> errors);
 

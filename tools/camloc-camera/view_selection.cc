@@ -67,7 +67,8 @@ bool is_new_view(const BoardCorners& corners, std::span<const BoardView> views, 
   });
 }
 
-ViewChoice choose_views(const Board& board, std::span<const BoardView> views, int width, int height, std::size_t max_fit, std::size_t max_held_out) {
+ViewChoice choose_views(const Board& board, std::span<const BoardView> views, int width, int height, std::size_t max_fit,
+                        std::size_t max_held_out) {
   ViewChoice choice;
   std::vector<std::size_t> candidates;
   std::vector<std::optional<Stand>> stands;
@@ -111,8 +112,10 @@ std::string CoverageGrid::bare_sides() const {
   for (int row = 0; row < kRows; ++row) left += is_covered(0, row), right += is_covered(kColumns - 1, row);
   for (int column = 0; column < kColumns; ++column) top += is_covered(column, 0), bottom += is_covered(column, kRows - 1);
   std::string text;
-  const struct { const char* name; bool is_bare; } sides[] = {
-      {"left", 2 * left < kRows}, {"right", 2 * right < kRows}, {"top", 2 * top < kColumns}, {"bottom", 2 * bottom < kColumns}};
+  const struct {
+    const char* name;
+    bool is_bare;
+  } sides[] = {{"left", 2 * left < kRows}, {"right", 2 * right < kRows}, {"top", 2 * top < kColumns}, {"bottom", 2 * bottom < kColumns}};
   for (const auto& side : sides) {
     if (side.is_bare) text += std::string(text.empty() ? "" : ", ") + "the " + side.name;
   }

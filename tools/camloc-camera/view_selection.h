@@ -23,7 +23,8 @@ struct ViewChoice {
 
 /// Holds every fourth view out where there are sixteen or more, at most `max_held_out`; of the others takes the one that adds most
 /// to coverage and variety of angles, again and again, at most `max_fit`.
-[[nodiscard]] ViewChoice choose_views(const Board& board, std::span<const BoardView> views, int width, int height, std::size_t max_fit, std::size_t max_held_out);
+[[nodiscard]] ViewChoice choose_views(const Board& board, std::span<const BoardView> views, int width, int height, std::size_t max_fit,
+                                      std::size_t max_held_out);
 
 /// Corners per cell of a grid over the image, row by row.
 struct CoverageGrid {

@@ -99,8 +99,7 @@ void add_build_command(CLI::App& app, int& exit_code) {
                       "COLMAP text model of the colour images); default: found by SLAM");
   command->add_option("--frames", request.frames.include, "Frames to use: start:stop:step[,...], Python slices (default: all)");
   command->add_option("--exclude", request.frames.exclude, "Frames to leave out, same notation");
-  command
-      ->add_option("--max-bytes", request.map.max_bytes, "Size limit of the file; the most useful landmarks are kept (accepts KB, MB)")
+  command->add_option("--max-bytes", request.map.max_bytes, "Size limit of the file; the most useful landmarks are kept (accepts KB, MB)")
       ->transform(CLI::AsSizeValue(true));
   command->add_option("--extend", request.extend_path,
                       "Map of the same building that the recording is added to, with its frame and name; --max-bytes then limits the "
@@ -116,19 +115,23 @@ void add_build_command(CLI::App& app, int& exit_code) {
   command->add_option("--trajectory", request.trajectory_path, "Write where the camera was in each frame, TUM format");
   command->add_flag("--resume", request.is_resumed, "Go on with a build of the same map that was interrupted");
   command->add_flag("!--no-level", request.is_levelled, "Do not turn the map so that z points up");
-  command->add_option("--accelerometer", request.accelerometer_path,
-                      "Readings that say which way is up, 'timestamp ax ay az' (default: the floor, or accelerometer.txt of the recording)");
+  command->add_option(
+      "--accelerometer", request.accelerometer_path,
+      "Readings that say which way is up, 'timestamp ax ay az' (default: the floor, or accelerometer.txt of the recording)");
   CLI::Option* points = command->add_option("--points", request.survey.points_path,
                                             "Surveyed control points, 'name x y z [sigma_m]': they hold the map and fix it in the site");
   CLI::Option* observed =
-      command->add_option("--observed", request.survey.observed_path, "Where they are seen, 'name pixel FRAME u v [sigma_px]'")->needs(points);
+      command->add_option("--observed", request.survey.observed_path, "Where they are seen, 'name pixel FRAME u v [sigma_px]'")
+          ->needs(points);
   points->needs(observed);
   command->add_flag("--exclude-suspects", request.survey.is_excluding_suspects, "Leave out control points that the others contradict")
       ->needs(points);
   command->add_option("--ba", arguments->adjustment, "Bundle adjustment with measured depth or without, for comparison")
-      ->check(CLI::IsMember({"2d", "depth"}))->capture_default_str();
+      ->check(CLI::IsMember({"2d", "depth"}))
+      ->capture_default_str();
   command->add_option("--tracking", arguments->tracking, "The same for tracking")
-      ->check(CLI::IsMember({"2d", "depth"}))->capture_default_str();
+      ->check(CLI::IsMember({"2d", "depth"}))
+      ->capture_default_str();
   command->add_flag("--json", arguments->is_json, "Print the summary as JSON");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

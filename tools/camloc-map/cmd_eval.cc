@@ -62,8 +62,7 @@ Result<std::vector<PosePair>> match_poses(const std::string& trajectory_path, co
   if (!trajectory.is_ok()) return trajectory.status();
   std::vector<PosePair> pairs;
   for (const StampedPose& pose : trajectory.value()) {
-    if (const auto T_reference_camera = pose_at(reference, pose.stamp_ns))
-      pairs.push_back({pose.T_world_camera, *T_reference_camera});
+    if (const auto T_reference_camera = pose_at(reference, pose.stamp_ns)) pairs.push_back({pose.T_world_camera, *T_reference_camera});
   }
   if (pairs.size() >= 3) return pairs;
   return {ErrorCode::kInvalid, trajectory_path + ": only " + std::to_string(pairs.size()) + " of its " +
@@ -156,8 +155,7 @@ Status evaluate(const EvalArguments& arguments, const MapView& map, EvalSummary*
   input.cloud = &cloud.value();
   EvaluationOptions options = arguments.options;
   // A recording's poses are in a frame of their own: the datum of the map says nothing about it.
-  if (!is_scan && options.start == AlignStart::kAuto && input.points.empty() && input.poses.empty())
-    options.start = AlignStart::kSearch;
+  if (!is_scan && options.start == AlignStart::kAuto && input.points.empty() && input.poses.empty()) options.start = AlignStart::kSearch;
   auto evaluation = evaluate_map(input, options, [&](const std::string& stage) {
     progress.say(stage);
     return !InterruptGuard::is_interrupted();
@@ -180,21 +178,18 @@ Status evaluate(const EvalArguments& arguments, const MapView& map, EvalSummary*
 
 Status check(const EvalArguments& arguments) {
   if (arguments.lidar_path.empty() == arguments.reference.sequence.empty()) {
-    return {ErrorCode::kInvalid,
-            "give a cloud to compare with: either --lidar CLOUD, or --reference-sequence DIR with --camera FILE"};
+    return {ErrorCode::kInvalid, "give a cloud to compare with: either --lidar CLOUD, or --reference-sequence DIR with --camera FILE"};
   }
   if (!arguments.reference.sequence.empty() && arguments.camera_path.empty())
     return {ErrorCode::kInvalid, "--reference-sequence needs --camera FILE"};
   const bool has_reference_poses = !arguments.reference.sequence.empty() || !arguments.reference_trajectory_path.empty();
   if (!arguments.trajectory_path.empty() && !has_reference_poses) {
-    return {ErrorCode::kInvalid,
-            "--trajectory needs poses to compare it with: --reference-trajectory FILE in the frame of the scan"};
+    return {ErrorCode::kInvalid, "--trajectory needs poses to compare it with: --reference-trajectory FILE in the frame of the scan"};
   }
   if (!arguments.reference_trajectory_path.empty() && (arguments.trajectory_path.empty() || arguments.lidar_path.empty())) {
     return {ErrorCode::kInvalid, "--reference-trajectory goes with --lidar and --trajectory"};
   }
-  if (!arguments.out_dir.empty() && std::filesystem::exists(arguments.out_dir) &&
-      !std::filesystem::is_directory(arguments.out_dir)) {
+  if (!arguments.out_dir.empty() && std::filesystem::exists(arguments.out_dir) && !std::filesystem::is_directory(arguments.out_dir)) {
     return {ErrorCode::kInvalid, "--out-dir " + arguments.out_dir + ": is a file; give a folder"};
   }
   return Status::ok();
@@ -211,8 +206,7 @@ int run(const EvalArguments& arguments) {
   const auto map = MapView::open(arguments.map_path);
   if (!map.is_ok()) return report_error(map.status(), exit_code_of(map.status()));
   EvalSummary summary;
-  if (const Status done = evaluate(arguments, map.value(), &summary); !done.is_ok())
-    return report_error(done, exit_code_of(done));
+  if (const Status done = evaluate(arguments, map.value(), &summary); !done.is_ok()) return report_error(done, exit_code_of(done));
   const std::string text = arguments.is_json ? format_json(summary) : format_table(summary);
   return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0 ? 0 : 1;
 }
@@ -225,10 +219,8 @@ void add_reference_options(CLI::App* command, EvalArguments* arguments) {
   command->add_option("--reference-sequence", arguments->reference.sequence,
                       "Instead of a scan: recording whose depth images and poses make a dense cloud (TUM RGB-D or 7-Scenes)");
   command->add_option("--camera", arguments->camera_path, "Calibration of that recording");
-  command->add_option("--poses", arguments->reference.poses,
-                      "Its poses: 'embedded' (default) or a trajectory file in TUM format");
-  command->add_option("--frame-step", arguments->frame_step, "Every so many of its frames (default 5)")
-      ->check(CLI::Range(1, 100000));
+  command->add_option("--poses", arguments->reference.poses, "Its poses: 'embedded' (default) or a trajectory file in TUM format");
+  command->add_option("--frame-step", arguments->frame_step, "Every so many of its frames (default 5)")->check(CLI::Range(1, 100000));
 }
 
 void add_alignment_options(CLI::App* command, EvalArguments* arguments) {
@@ -256,8 +248,7 @@ void add_alignment_options(CLI::App* command, EvalArguments* arguments) {
       ->check(CLI::Range(0.01, 100.0));
   command->add_option("--voxel", arguments->voxel_m, "Thin the cloud to a point a voxel of this size, metres (default 0.01)")
       ->check(CLI::Range(0.001, 1.0));
-  command->add_option("--min-observations", arguments->options.min_observations,
-                      "Landmarks seen by fewer frames are left out (default 2)");
+  command->add_option("--min-observations", arguments->options.min_observations, "Landmarks seen by fewer frames are left out (default 2)");
 }
 
 }  // namespace

@@ -48,7 +48,8 @@ Status write_exports(const MapView& map, const ExportArguments& arguments) {
   }
   if (!arguments.colmap_folder.empty()) {
     const ColmapModel model = make_colmap_model(map, options);
-    if (const Status written = write_colmap_model(model, arguments.colmap_folder, describe_export(map, options)); !written.is_ok()) return written;
+    if (const Status written = write_colmap_model(model, arguments.colmap_folder, describe_export(map, options)); !written.is_ok())
+      return written;
     std::size_t num_observations = 0;
     for (const ColmapImage& image : model.images) num_observations += image.observations.size();
     std::printf("%s: %llu images, %llu points, %llu observations\n", arguments.colmap_folder.c_str(), count(model.images.size()),

@@ -69,8 +69,9 @@ bool has_pixels(const std::vector<ControlObservation>& observations) {
 
 Status check_arguments(const GeorefArguments& arguments, const std::vector<ControlObservation>& observations) {
   if (!has_pixels(observations) || (!arguments.sequence_url.empty() && !arguments.camera_path.empty())) return Status::ok();
-  return {ErrorCode::kInvalid, arguments.observed_path + ": has pixels of recorded frames; name the recording with --sequence and its camera "
-                                                         "file with --camera"};
+  return {ErrorCode::kInvalid, arguments.observed_path +
+                                   ": has pixels of recorded frames; name the recording with --sequence and its camera "
+                                   "file with --camera"};
 }
 
 /// Everything that the observed file names, as points of the map.
@@ -94,11 +95,13 @@ Result<ResolvedObservations> resolve(const GeorefArguments& arguments, const Map
   return resolve_observations(observations, camera, sources);
 }
 
-void name_partnerless(const std::vector<ControlPoint>& points, const std::vector<ControlObservation>& observations, GeorefSummary* summary) {
+void name_partnerless(const std::vector<ControlPoint>& points, const std::vector<ControlObservation>& observations,
+                      GeorefSummary* summary) {
   std::set<std::string> surveyed, observed;
   for (const ControlPoint& point : points) surveyed.insert(point.name);
   for (const ControlObservation& observation : observations) {
-    if (observed.insert(observation.name).second && !surveyed.contains(observation.name)) summary->only_in_observed.push_back(observation.name);
+    if (observed.insert(observation.name).second && !surveyed.contains(observation.name))
+      summary->only_in_observed.push_back(observation.name);
   }
   for (const ControlPoint& point : points) {
     if (!observed.contains(point.name)) summary->only_in_points.push_back(point.name);

@@ -36,8 +36,7 @@ Status merge_files(const MergeArguments& arguments, MergeSummary* summary) {
   if (a.value().info().map_id == b.value().info().map_id)
     return {ErrorCode::kInvalid, arguments.first + " and " + arguments.second + " are the same map: there is nothing to merge"};
   const MapData second = unpack_map(b.value());
-  if (b.value().is_damaged())
-    return {ErrorCode::kCorrupt, arguments.second + ": could not be read to its end; was it changed meanwhile?"};
+  if (b.value().is_damaged()) return {ErrorCode::kCorrupt, arguments.second + ": could not be read to its end; was it changed meanwhile?"};
   summary->map_b = arguments.second;
   const tools::InterruptGuard guard;
   const Status merged = merge_into(arguments.first, second, arguments.options, arguments.map_path, summary);
@@ -49,8 +48,7 @@ Status merge_files(const MergeArguments& arguments, MergeSummary* summary) {
 }
 
 int run(const MergeArguments& arguments) {
-  if (const Status output = tools::check_output_path("--out", arguments.map_path); !output.is_ok())
-    return report_error(output, 2);
+  if (const Status output = tools::check_output_path("--out", arguments.map_path); !output.is_ok()) return report_error(output, 2);
   MergeSummary summary;
   if (const Status merged = merge_files(arguments, &summary); !merged.is_ok())
     return report_error(merged, merged.code() == ErrorCode::kInvalid ? 2 : 1);
@@ -68,8 +66,7 @@ void add_merge_command(CLI::App& app, int& exit_code) {
   command->add_option("SECOND", arguments->second, "Map file that is added")->required();
   command->add_option("--out", arguments->map_path, "Map file to write; replaced only when the new one is complete")->required();
   command
-      ->add_option("--max-bytes", arguments->options.map.max_bytes,
-                   "Size limit of the file; what is most useful is kept (accepts KB, MB)")
+      ->add_option("--max-bytes", arguments->options.map.max_bytes, "Size limit of the file; what is most useful is kept (accepts KB, MB)")
       ->transform(CLI::AsSizeValue(true));
   command->add_flag("--json", arguments->is_json, "Print the summary as JSON");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

@@ -88,15 +88,14 @@ void ColorSensor::soften() {
     for (int x = 1; x + 1 < width; ++x) out[x] = (1 - 2 * kSide) * in[x] + kSide * (in[x - 1] + in[x + 1]);
   }
   for (int y = 0; y < height; ++y) {
-    const float *in = scratch_.row(y), *above = scratch_.row(std::max(0, y - 1)),
-                *below = scratch_.row(std::min(height - 1, y + 1));
+    const float *in = scratch_.row(y), *above = scratch_.row(std::max(0, y - 1)), *below = scratch_.row(std::min(height - 1, y + 1));
     float* out = radiance_.row(y);
     for (int x = 0; x < width; ++x) out[x] = (1 - 2 * kSide) * in[x] + kSide * (above[x] + below[x]);
   }
 }
 
-void ColorSensor::expose(const Rendering& rendering, const Trajectory::Twist& twist, const Exposure& exposure,
-                         std::uint32_t frame_seed, bool is_perfect, Image<std::uint8_t>* gray) {
+void ColorSensor::expose(const Rendering& rendering, const Trajectory::Twist& twist, const Exposure& exposure, std::uint32_t frame_seed,
+                         bool is_perfect, Image<std::uint8_t>* gray) {
   gray->resize(intrinsics_.width, intrinsics_.height);
   if (is_perfect) {
     radiance_.pixels = rendering.radiance.pixels;

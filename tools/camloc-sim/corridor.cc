@@ -103,9 +103,8 @@ void decorate_wall(Scene* scene, const FloorPlan& plan, int side_index, bool is_
       const double s = stretch.from_s + (slot + 0.5) * kSlot;
       const bool is_inner_corner = !is_outer && (s < kCorridorWidth + 0.75 || s > side.length - kCorridorWidth - 0.75);
       if (is_inner_corner || !is_free(doorways, s, 0.95)) continue;
-      const std::uint32_t unique =
-          hash32(options.seed, static_cast<std::uint32_t>(side_index * 1000 + slot * 2 + (is_outer ? 1 : 0)),
-                 static_cast<std::uint32_t>(stretch.from_s * 10));
+      const std::uint32_t unique = hash32(options.seed, static_cast<std::uint32_t>(side_index * 1000 + slot * 2 + (is_outer ? 1 : 0)),
+                                          static_cast<std::uint32_t>(stretch.from_s * 10));
       decorate_slot(scene, side, is_outer, stretch, slot, s, unique);
     }
     // What tells look-alike stretches apart for the attentive: one sheet of paper each, and the door plates.
@@ -140,8 +139,8 @@ void add_shell(Scene* scene, const FloorPlan& plan, int side_index) {
       scene->add_ceiling(side.place, stretch.from_s, 0, to, kCorridorWidth, kCorridorHeight,
                          {Material::kCeiling, hash32(stretch.look, 102), 0.82F}, kCorridorRoom);
     }
-    add_wall(scene, side.place, stretch.to_s, stretch.from_s, 0.0, kCorridorHeight, doorways_of(plan, side_index, true),
-             wall_skin(stretch), kCorridorRoom);
+    add_wall(scene, side.place, stretch.to_s, stretch.from_s, 0.0, kCorridorHeight, doorways_of(plan, side_index, true), wall_skin(stretch),
+             kCorridorRoom);
     const double inner_from = std::max(stretch.from_s, is_first_open ? 0.0 : kCorridorWidth);
     const double inner_to = std::min(stretch.to_s, is_last_open ? side.length : side.length - kCorridorWidth);
     if (inner_to > inner_from) {
@@ -151,8 +150,7 @@ void add_shell(Scene* scene, const FloorPlan& plan, int side_index) {
   }
   const Skin end{Material::kPaint, 300, 0.75F};
   if (is_first_open) scene->add_upright(side.place, 0, 0, 0, kCorridorWidth, 0, kCorridorHeight, end, kCorridorRoom);
-  if (is_last_open)
-    scene->add_upright(side.place, side.length, kCorridorWidth, side.length, 0, 0, kCorridorHeight, end, kCorridorRoom);
+  if (is_last_open) scene->add_upright(side.place, side.length, kCorridorWidth, side.length, 0, 0, kCorridorHeight, end, kCorridorRoom);
   for (const Doorway& door : doorways_of(plan, side_index, true)) add_reveal(scene, side.place, door, -kWallThickness, 0.0);
   for (const Doorway& door : doorways_of(plan, side_index, false))
     add_reveal(scene, side.place, door, kCorridorWidth, kCorridorWidth + kWallThickness);
@@ -160,8 +158,8 @@ void add_shell(Scene* scene, const FloorPlan& plan, int side_index) {
 
 }  // namespace
 
-void add_wall(Scene* scene, const Placement& place, double x0, double x1, double y, double height,
-              const std::vector<Doorway>& doorways, const Skin& skin, int room) {
+void add_wall(Scene* scene, const Placement& place, double x0, double x1, double y, double height, const std::vector<Doorway>& doorways,
+              const Skin& skin, int room) {
   const double direction = x1 > x0 ? 1.0 : -1.0, length = std::fabs(x1 - x0);
   const auto piece = [&](double from, double to, double z0) {  // along the wall, from its left end
     if (to - from < 1e-6) return;

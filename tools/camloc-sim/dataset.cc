@@ -44,8 +44,8 @@ std::string readme(const DatasetOptions& options, const RgbdCamera& camera, cons
       << "day2/           " << summary.num_day2_frames
       << " frames: another day: other path, heights and angles, other light (some lamps off), chairs, boxes\n"
       << "                and papers moved, people in the way, a stretch walked in the other direction\n"
-      << "lidar.ply       " << summary.num_lidar_points << " points of what does not move, every " << options.lidar.step_m
-      << " m, noise " << options.lidar.noise_m << " m\n"
+      << "lidar.ply       " << summary.num_lidar_points << " points of what does not move, every " << options.lidar.step_m << " m, noise "
+      << options.lidar.noise_m << " m\n"
       << "camera.toml     the camera of both walks\n\n"
       << "Each walk is a TUM RGB-D folder: rgb.txt, depth.txt (5000 units per metre, registered to colour, 0 = none) and "
          "groundtruth.txt\n"
@@ -81,8 +81,7 @@ Result<DatasetSummary> write_dataset(const std::string& folder, const DatasetOpt
     const FloorPlan plan = floor_plan(options.kind);
     LidarOptions lidar = options.lidar;
     lidar.seed = options.seed;
-    Result<std::uint64_t> points =
-        write_lidar_ply(folder + "/lidar.ply", build_scene(plan, {options.kind, options.seed, 1}), lidar);
+    Result<std::uint64_t> points = write_lidar_ply(folder + "/lidar.ply", build_scene(plan, {options.kind, options.seed, 1}), lidar);
     if (!points) return points.status();
     summary.num_lidar_points = *points;
     if (progress) progress("lidar", 1, 1);

@@ -35,8 +35,7 @@ void DepthSensor::measure_exactly(const Rendering& rendering, Image<std::uint16_
   }
 }
 
-void DepthSensor::measure(const Rendering& rendering, const Renderer& renderer, std::uint32_t frame_seed,
-                          Image<std::uint16_t>* depth) {
+void DepthSensor::measure(const Rendering& rendering, const Renderer& renderer, std::uint32_t frame_seed, Image<std::uint16_t>* depth) {
   depth->resize(intrinsics_.width, intrinsics_.height);
   if (options_.is_perfect) return measure_exactly(rendering, depth);
   const int width = intrinsics_.width, height = intrinsics_.height;
@@ -58,8 +57,7 @@ void DepthSensor::measure(const Rendering& rendering, const Renderer& renderer, 
       out = 0;
       if (z < static_cast<float>(options_.min_m) || z > static_cast<float>(options_.max_m)) continue;
       if (is_shadowed_[static_cast<std::size_t>(x)] != 0U) continue;
-      if (is_edge && std::fabs(rendering.depth_m.at(from_x, from_y) - rendering.depth_m.at(x, y)) > 0.02F * z &&
-          (bits >> 16) % 4U == 0U)
+      if (is_edge && std::fabs(rendering.depth_m.at(from_x, from_y) - rendering.depth_m.at(x, y)) > 0.02F * z && (bits >> 16) % 4U == 0U)
         continue;
       // Little light comes back at a grazing angle, and from far away; shiny things answer in patches.
       const float cosine = rendering.cosine.at(x, y);

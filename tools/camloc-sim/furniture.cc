@@ -70,8 +70,7 @@ void add_desk(Scene* scene, const Placement& place, const Seeds& seeds, int room
 
 void add_bookshelf(Scene* scene, const Placement& place, double width_m, const Seeds& seeds, int room) {
   const Skin wood = skin(Material::kWood, hash32(seeds.object, 1), 0.5F);
-  scene->add_box(place, {0.0, -0.3, 0.0, width_m, -0.01, 2.05}, wood, skin(Material::kBooks, hash32(seeds.object, 2)), room,
-                 true);
+  scene->add_box(place, {0.0, -0.3, 0.0, width_m, -0.01, 2.05}, wood, skin(Material::kBooks, hash32(seeds.object, 2)), room, true);
 }
 
 void add_chair(Scene* scene, const Placement& place, const Seeds& seeds, int room) {
@@ -92,8 +91,8 @@ void add_box_pile(Scene* scene, const Placement& place, const Seeds& seeds, int 
     const double half_x = range(hash32(h, 1), 0.16F, 0.28F), half_y = range(hash32(h, 2), 0.14F, 0.24F),
                  height = range(hash32(h, 3), 0.2F, 0.36F);
     const Skin look = skin(Material::kCardboard, hash32(h, 4), range(hash32(h, 5), 0.45F, 0.65F));
-    scene->add_box(place.child(0, 0, range(hash32(h, seeds.day, 6), -0.3F, 0.3F)),
-                   {-half_x, -half_y, z, half_x, half_y, z + height}, look, look, room, false);
+    scene->add_box(place.child(0, 0, range(hash32(h, seeds.day, 6), -0.3F, 0.3F)), {-half_x, -half_y, z, half_x, half_y, z + height}, look,
+                   look, room, false);
     z += height;
   }
 }
@@ -125,8 +124,7 @@ void add_radiator(Scene* scene, const Placement& place, double width_m, int room
 
 void add_closed_door(Scene* scene, const Placement& place, std::uint32_t plate_seed, int room) {
   constexpr double kWidth = 0.95, kHeight = 2.08;
-  const Skin frame = skin(Material::kPlain, 17, 0.35F), leaf = skin(Material::kWood, 18, 0.56F),
-             metal = skin(Material::kPlain, 19, 0.75F);
+  const Skin frame = skin(Material::kPlain, 17, 0.35F), leaf = skin(Material::kWood, 18, 0.56F), metal = skin(Material::kPlain, 19, 0.75F);
   scene->add_box(place, {-0.06, -0.03, 0.0, 0.0, 0.0, kHeight}, frame, frame, room, true);
   scene->add_box(place, {kWidth, -0.03, 0.0, kWidth + 0.06, 0.0, kHeight}, frame, frame, room, true);
   scene->add_box(place, {-0.06, -0.03, kHeight, kWidth + 0.06, 0.0, kHeight + 0.06}, frame, frame, room, true);
@@ -136,8 +134,8 @@ void add_closed_door(Scene* scene, const Placement& place, std::uint32_t plate_s
   add_on_wall(scene, place.child(kWidth + 0.25, 0, 0), 0.22, 0.14, 1.5, 0.006, skin(Material::kSign, plate_seed, 0.9F), room);
 }
 
-void add_on_wall(Scene* scene, const Placement& place, double width_m, double height_m, double bottom_z, double depth_m,
-                 const Skin& look, int room) {
+void add_on_wall(Scene* scene, const Placement& place, double width_m, double height_m, double bottom_z, double depth_m, const Skin& look,
+                 int room) {
   const Skin edge = skin(Material::kPlain, 20, 0.3F);
   scene->add_box(place, {-0.5 * width_m, -depth_m, bottom_z, 0.5 * width_m, 0.0, bottom_z + height_m}, edge, look, room, true);
 }

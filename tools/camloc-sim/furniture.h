@@ -31,8 +31,8 @@ void add_radiator(Scene* scene, const Placement& place, double width_m, int room
 /// Closed door with frame, handle and number plate in the wall y = 0, hinge at x = 0. All doors are alike but for the plate.
 void add_closed_door(Scene* scene, const Placement& place, std::uint32_t plate_seed, int room);
 /// Poster, sign, board: a sheet `depth_m` thick on the wall y = 0, centred at x = 0.
-void add_on_wall(Scene* scene, const Placement& place, double width_m, double height_m, double bottom_z, double depth_m,
-                 const Skin& skin, int room);
+void add_on_wall(Scene* scene, const Placement& place, double width_m, double height_m, double bottom_z, double depth_m, const Skin& skin,
+                 int room);
 /// Standing person of 1.6 to 1.9 m, centred, facing -y; `stride` in [-1, 1] moves legs and arms.
 void add_person(Scene* scene, const Placement& place, std::uint32_t seed, double stride, int room);
 

@@ -21,8 +21,7 @@ void append_float(std::string* out, double value) {
   out->append(bytes, 4);
 }
 
-std::uint64_t append_surface(const Surface& s, const LidarOptions& options, const NormalTable& normal, Xorshift* random,
-                             std::string* out) {
+std::uint64_t append_surface(const Surface& s, const LidarOptions& options, const NormalTable& normal, Xorshift* random, std::string* out) {
   const int columns = static_cast<int>(s.width / options.step_m), rows = static_cast<int>(s.height / options.step_m);
   const Eigen::Vector3d up = s.normal();
   for (int j = 0; j < rows; ++j) {
@@ -31,8 +30,8 @@ std::uint64_t append_surface(const Surface& s, const LidarOptions& options, cons
       const double v = s.height * (j + double{unit((*random)())}) / rows;
       const Eigen::Vector3d p = s.at(u, v) + options.noise_m * normal((*random)()) * up;
       for (int k = 0; k < 3; ++k) append_float(out, p[k]);
-      const float tone = texture_tone(s.skin, static_cast<float>(u) + s.texture_u, static_cast<float>(v) + s.texture_v,
-                                      s.texture_width, s.texture_height, 0.01F);
+      const float tone = texture_tone(s.skin, static_cast<float>(u) + s.texture_u, static_cast<float>(v) + s.texture_v, s.texture_width,
+                                      s.texture_height, 0.01F);
       out->push_back(static_cast<char>(static_cast<std::uint8_t>(std::clamp(255.0F * tone, 0.0F, 255.0F))));
     }
   }

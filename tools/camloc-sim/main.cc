@@ -21,14 +21,12 @@ using camloc::sim::SceneKind;
 
 void add_options(CLI::App* app, std::string* out, camloc::sim::DatasetOptions* options, std::string* only) {
   app->add_option("--out", *out, "Folder to write to; created, must be empty unless --force")->required();
-  app->add_option("--scene", options->kind,
-                  "building: corridor loop 57 x 40 m with nine offices; small: a corner and two offices")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, SceneKind>{{"building", SceneKind::kBuilding}, {"small", SceneKind::kSmall}}))
+  app->add_option("--scene", options->kind, "building: corridor loop 57 x 40 m with nine offices; small: a corner and two offices")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, SceneKind>{{"building", SceneKind::kBuilding}, {"small", SceneKind::kSmall}}))
       ->default_str("building");
   app->add_option("--seed", options->seed, "Another seed is another building and another walk")->capture_default_str();
-  app->add_option("--rate-hz", options->recording.rate_hz, "Frames per second (default 30; small 10)")
-      ->check(CLI::Range(0.1, 240.0));
+  app->add_option("--rate-hz", options->recording.rate_hz, "Frames per second (default 30; small 10)")->check(CLI::Range(0.1, 240.0));
   app->add_option("--duration-scale", options->recording.duration_scale, "Only this share of each walk")
       ->check(CLI::Range(0.001, 1.0))
       ->capture_default_str();

@@ -51,8 +51,7 @@ inline float value_noise(float x, float y, std::uint32_t seed) {
   constexpr std::uint32_t kColumn = 0x27d4eb2dU, kRow = 0x165667b1U;
   const int ix = floor_int(x), iy = floor_int(y);
   const float fx = x - static_cast<float>(ix), fy = y - static_cast<float>(iy);
-  const std::uint32_t column = static_cast<std::uint32_t>(ix) * kColumn,
-                      row = static_cast<std::uint32_t>(iy) * kRow + seed * 0x9e3779b1U;
+  const std::uint32_t column = static_cast<std::uint32_t>(ix) * kColumn, row = static_cast<std::uint32_t>(iy) * kRow + seed * 0x9e3779b1U;
   const float a = knot(column, row), b = knot(column + kColumn, row);
   const float c = knot(column, row + kRow), d = knot(column + kColumn, row + kRow);
   const float sx = fx * fx * (3.0F - 2.0F * fx), sy = fy * fy * (3.0F - 2.0F * fy);

@@ -19,8 +19,8 @@ struct RoomWalls {
 };
 
 RoomWalls walls_of(const Placement& place, const Office& office) {
-  return {place.child(office.width, 0, kPi), place.child(office.width, office.depth, -0.5 * kPi),
-          place.child(0, office.depth, 0.0), place.child(0, 0, 0.5 * kPi)};
+  return {place.child(office.width, 0, kPi), place.child(office.width, office.depth, -0.5 * kPi), place.child(0, office.depth, 0.0),
+          place.child(0, 0, 0.5 * kPi)};
 }
 
 void add_shell(Scene* scene, const Placement& place, const Office& office, std::uint32_t seed) {
@@ -49,8 +49,7 @@ void add_lights(Scene* scene, const Placement& place, const Office& office) {
 void add_back_wall(Scene* scene, const RoomWalls& walls, const Office& office, const SceneOptions& options, std::uint32_t seed) {
   const double middle = 0.5 * office.width;
   const float sky = options.day == 1 ? 0.85F : 1.05F;
-  add_on_wall(scene, walls.back.child(middle, 0, 0), 1.9, 1.25, 1.0, 0.03, {Material::kWindow, hash32(seed, 20), sky},
-              office.room);
+  add_on_wall(scene, walls.back.child(middle, 0, 0), 1.9, 1.25, 1.0, 0.03, {Material::kWindow, hash32(seed, 20), sky}, office.room);
   add_radiator(scene, walls.back.child(middle - 0.8, 0, 0), 1.6, office.room);
   add_cabinet(scene, walls.back.child(office.width - 0.95, 0, 0), {hash32(seed, 21), options.day}, office.room);
 }
@@ -69,10 +68,8 @@ void add_side_walls(Scene* scene, const RoomWalls& walls, const Office& office, 
   // Beside the door.
   add_on_wall(scene, walls.door.child(office.width - 2.5, 0, 0), 0.6, 0.85, 1.15, 0.012, {Material::kPoster, hash32(seed, 37)},
               office.room);
-  add_on_wall(scene, walls.door.child(office.width - 2.05, 0, 0), 0.08, 0.08, 1.1, 0.01, {Material::kSign, 38, 0.95F},
-              office.room);
-  add_on_wall(scene, walls.door.child(office.width - 3.4, 0, 0), 0.8, 0.6, 1.2, 0.012, {Material::kPoster, hash32(seed, 39)},
-              office.room);
+  add_on_wall(scene, walls.door.child(office.width - 2.05, 0, 0), 0.08, 0.08, 1.1, 0.01, {Material::kSign, 38, 0.95F}, office.room);
+  add_on_wall(scene, walls.door.child(office.width - 3.4, 0, 0), 0.8, 0.6, 1.2, 0.012, {Material::kPoster, hash32(seed, 39)}, office.room);
 }
 
 /// What people move around from day to day.
@@ -81,10 +78,10 @@ void add_clutter(Scene* scene, const Placement& place, const Office& office, con
     return static_cast<double>(range(hash32(seed, options.day, id), -metres, metres));
   };
   const double w = office.width, d = office.depth;
-  add_chair(scene, place.child(0.95 + jitter(1, 0.12F), 2.55 + jitter(2, 0.35F), 1.4 + jitter(3, 0.8F)),
-            {hash32(seed, 50), options.day}, office.room);
-  add_chair(scene, place.child(w - 1.05 + jitter(4, 0.12F), 2.9 + jitter(5, 0.3F), -1.5 + jitter(6, 0.8F)),
-            {hash32(seed, 51), options.day}, office.room);
+  add_chair(scene, place.child(0.95 + jitter(1, 0.12F), 2.55 + jitter(2, 0.35F), 1.4 + jitter(3, 0.8F)), {hash32(seed, 50), options.day},
+            office.room);
+  add_chair(scene, place.child(w - 1.05 + jitter(4, 0.12F), 2.9 + jitter(5, 0.3F), -1.5 + jitter(6, 0.8F)), {hash32(seed, 51), options.day},
+            office.room);
   const bool is_moved = options.day != 1;
   add_box_pile(scene, is_moved ? place.child(0.4, 0.4 + jitter(7, 0.1F), 0.3) : place.child(0.45, d - 0.5, 0.1),
                {hash32(seed, 52), options.day}, office.room);

@@ -36,9 +36,9 @@ float picture(const Sheet& s, std::uint32_t seed) {
     const std::uint32_t h = hash32(seed, 100U + static_cast<std::uint32_t>(k));
     const float cu = range(hash32(h, 1), 0.1F, 0.9F) * s.width, cv = range(hash32(h, 2), 0.1F, 0.9F) * s.height;
     const float half = range(hash32(h, 3), 0.05F, 0.2F) * size;
-    const float ink = h % 2U == 0U ? covered_disc(s.u, s.v, cu, cv, half, s.foot)
-                                   : rotated_rectangle(s, cu, cv, half, half * range(hash32(h, 4), 0.25F, 1.0F),
-                                                       range(hash32(h, 5), 0.0F, 3.1F));
+    const float ink = h % 2U == 0U
+                          ? covered_disc(s.u, s.v, cu, cv, half, s.foot)
+                          : rotated_rectangle(s, cu, cv, half, half * range(hash32(h, 4), 0.25F, 1.0F), range(hash32(h, 5), 0.0F, 3.1F));
     tone = mix(tone, range(hash32(h, 6), 0.05F, 0.95F), ink);
   }
   return tone;
@@ -48,8 +48,7 @@ float bar_chart(const Sheet& s, std::uint32_t seed) {
   const float cell = s.width / 9.0F;
   const int i = floor_int(s.u / cell);
   const float height = s.height * range(hash_cell(i, 0, seed), 0.15F, 0.95F);
-  const float bar =
-      covered(s.u - static_cast<float>(i) * cell, 0.2F * cell, 0.9F * cell, s.foot) * covered(s.v, 0.0F, height, s.foot);
+  const float bar = covered(s.u - static_cast<float>(i) * cell, 0.2F * cell, 0.9F * cell, s.foot) * covered(s.v, 0.0F, height, s.foot);
   return mix(0.92F, range(hash_cell(i, 1, seed), 0.1F, 0.6F), bar);
 }
 
@@ -72,8 +71,8 @@ float poster(const Sheet& s, std::uint32_t seed) {
   const float header = s.height * range(hash32(seed, 10), 0.72F, 0.86F), split = s.height * range(hash32(seed, 11), 0.25F, 0.45F);
   float tone = ground;
   if (s.v > header) {
-    tone = mix(1.0F - ground, ground,
-               text_block(s, 2 * rim, header, s.width - rim, s.height - rim, 0.45F * (s.height - header), seed + 20));
+    tone =
+        mix(1.0F - ground, ground, text_block(s, 2 * rim, header, s.width - rim, s.height - rim, 0.45F * (s.height - header), seed + 20));
   } else if (s.v > split) {
     const Sheet area{s.u, s.v - split, s.width, header - split, s.foot};
     switch (hash32(seed, 12) % 4U) {
@@ -86,8 +85,7 @@ float poster(const Sheet& s, std::uint32_t seed) {
     const float middle = has_columns ? 0.5F * s.width : s.width - rim;
     const float line = range(hash32(seed, 14), 0.015F, 0.03F);
     tone = mix(tone, ink, text_block(s, 2 * rim, rim, middle - rim, split - rim, line, seed + 40));
-    if (has_columns)
-      tone = mix(tone, picture({s.u - middle, s.v, s.width - middle, split, s.foot}, seed + 50), s.u > middle ? 1.0F : 0.0F);
+    if (has_columns) tone = mix(tone, picture({s.u - middle, s.v, s.width - middle, split, s.foot}, seed + 50), s.u > middle ? 1.0F : 0.0F);
   }
   return mix(is_dark ? 0.9F : 0.3F, tone, inside);
 }
@@ -104,9 +102,8 @@ float paper(const Sheet& s, std::uint32_t seed) {
   const float ink = text_block(s, rim, rim, s.width - rim, s.height - rim, 0.012F, seed);
   const float title = text_block(s, rim, s.height - 2.6F * rim, s.width - rim, s.height - rim, 0.03F, seed + 1);
   const float figure_v = s.height * range(hash32(seed, 2), 0.2F, 0.5F);
-  const float figure = hash32(seed, 3) % 2U == 0U
-                           ? covered_rectangle(s.u, s.v, rim, figure_v, s.width - rim, figure_v + 0.2F * s.height, s.foot)
-                           : 0.0F;
+  const float figure =
+      hash32(seed, 3) % 2U == 0U ? covered_rectangle(s.u, s.v, rim, figure_v, s.width - rim, figure_v + 0.2F * s.height, s.foot) : 0.0F;
   const float body = mix(0.92F, 0.15F, s.v > s.height - 2.6F * rim ? title : 0.8F * ink);
   return mix(body, figure > 0.0F ? picture({s.u, s.v - figure_v, s.width, 0.2F * s.height, s.foot}, seed + 4) : 0.5F, figure);
 }
@@ -196,8 +193,7 @@ float pinboard(const Sheet& s, std::uint32_t seed) {
 float cardboard(const Sheet& s, const Skin& skin) {
   float tone = skin.tone + 0.05F * octaves(s.u, s.v, 0.08F, 4, 0.6F, skin.seed, s.foot);
   tone = mix(tone, skin.tone + 0.18F, covered(s.u, 0.45F * s.width, 0.57F * s.width, s.foot));
-  const float u0 = 0.1F * s.width, v0 = range(hash32(skin.seed, 1), 0.15F, 0.5F) * s.height, w = 0.3F * s.width,
-              t = 0.25F * s.height;
+  const float u0 = 0.1F * s.width, v0 = range(hash32(skin.seed, 1), 0.15F, 0.5F) * s.height, w = 0.3F * s.width, t = 0.25F * s.height;
   const float label = covered_rectangle(s.u, s.v, u0, v0, u0 + w, v0 + t, s.foot);
   const float ink = label > 0.0F ? text_ink(s.u - u0 - 0.01F, v0 + t - s.v, 0.03F, skin.seed + 2, s.foot) : 0.0F;
   tone = mix(tone, mix(0.93F, 0.1F, ink), label);

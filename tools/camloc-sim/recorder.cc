@@ -61,18 +61,16 @@ Timeline timeline(const World& world, const RecordingOptions& options) {
   return {options.start_ns, interval_ns, 1 + static_cast<int>(duration_ns / static_cast<double>(interval_ns))};
 }
 
-Status write_frame(const FrameBuffer& frame, const RecordingOptions& options, const std::string& folder,
-                   const std::string& name) {
-  Status status = options.jpeg_quality > 0 ? write_jpeg(folder + "/rgb/" + name + ".jpg", frame.gray.pixels.data(),
-                                                        frame.gray.width, frame.gray.height, 1, options.jpeg_quality)
+Status write_frame(const FrameBuffer& frame, const RecordingOptions& options, const std::string& folder, const std::string& name) {
+  Status status = options.jpeg_quality > 0 ? write_jpeg(folder + "/rgb/" + name + ".jpg", frame.gray.pixels.data(), frame.gray.width,
+                                                        frame.gray.height, 1, options.jpeg_quality)
                                            : write_png(folder + "/rgb/" + name + ".png", frame.gray);
   return status ? write_depth_png(folder + "/depth/" + name + ".png", frame.depth) : status;
 }
 
 Status write_index(const World& world, const Timeline& times, const RecordingOptions& options, const std::string& folder) {
   const std::string extension = options.jpeg_quality > 0 ? ".jpg" : ".png";
-  std::string rgb = "# color images\n# timestamp filename\n",
-              depth = "# depth maps, 5000 units per metre\n# timestamp filename\n";
+  std::string rgb = "# color images\n# timestamp filename\n", depth = "# depth maps, 5000 units per metre\n# timestamp filename\n";
   std::string truth = "# ground truth: T_world_camera of the colour camera\n# timestamp tx ty tz qx qy qz qw\n";
   for (int i = 0; i < times.num_frames; ++i) {
     const std::string stamp = stamp_text(times.stamp_ns(i));

@@ -26,7 +26,7 @@ struct RecordingOptions {
 using Progress = std::function<void(int, int)>;
 
 /// Number of frames written. `folder` must not exist or be empty.
-[[nodiscard]] Result<int> record(const World& world, const RgbdCamera& camera, const RecordingOptions& options,
-                                 const std::string& folder, const Progress& progress);
+[[nodiscard]] Result<int> record(const World& world, const RgbdCamera& camera, const RecordingOptions& options, const std::string& folder,
+                                 const Progress& progress);
 
 }  // namespace camloc::sim

@@ -66,8 +66,7 @@ void Renderer::draw(const Surface& surface, std::int32_t index) {
   if (!make_view(surface, &view)) return;
   std::array<Eigen::Vector3d, 4> corners;
   const Eigen::Vector3d origin = R_camera_world_ * (surface.origin - camera_position_);
-  const Eigen::Vector3d u = R_camera_world_ * surface.u_axis * surface.width,
-                        v = R_camera_world_ * surface.v_axis * surface.height;
+  const Eigen::Vector3d u = R_camera_world_ * surface.u_axis * surface.width, v = R_camera_world_ * surface.v_axis * surface.height;
   corners = {origin, origin + u, origin + u + v, origin + v};
   if (std::all_of(corners.begin(), corners.end(), [](const Eigen::Vector3d& p) { return p.z() < kNear; })) return;
   // Entirely outside one side plane of the view.
@@ -132,8 +131,7 @@ Renderer::Hit Renderer::intersect(const View& view, float ray_x, float ray_y) co
   const float inverse = dot(view.normal, ray_x, ray_y);
   const float depth = inverse > 1e-6F ? 1.0F / inverse : 1e6F;
   const float cosine = inverse / (view.inverse_distance * std::sqrt(ray_x * ray_x + ray_y * ray_y + 1.0F));
-  return {depth * dot(view.u_ray, ray_x, ray_y) + view.u_offset, depth * dot(view.v_ray, ray_x, ray_y) + view.v_offset, depth,
-          cosine};
+  return {depth * dot(view.u_ray, ray_x, ray_y) + view.u_offset, depth * dot(view.v_ray, ray_x, ray_y) + view.v_offset, depth, cosine};
 }
 
 float Renderer::shade(const View& view, const Hit& hit) const {
@@ -160,8 +158,8 @@ float Renderer::shade_silhouette(int x, int y) const {
     for (int dx = -1; dx <= 1; ++dx) {
       const int nx = std::clamp(x + dx, 0, intrinsics_.width - 1), ny = std::clamp(y + dy, 0, intrinsics_.height - 1);
       const std::int32_t id = rendering_.surface.at(nx, ny);
-      if (id >= 0 && std::find(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count), id) ==
-                         ids.begin() + static_cast<std::ptrdiff_t>(count))
+      if (id >= 0 &&
+          std::find(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count), id) == ids.begin() + static_cast<std::ptrdiff_t>(count))
         ids[count++] = id;
     }
   }
@@ -199,8 +197,7 @@ void Renderer::shade_all() {
       const std::int32_t id = ids[x];
       const float inverse = inverse_depth_.at(x, y);
       rendering_.depth_m.at(x, y) = inverse > 0.0F ? 1.0F / inverse : 0.0F;
-      const bool is_silhouette =
-          ids[std::max(x - 1, 0)] != id || ids[std::min(x + 1, width - 1)] != id || above[x] != id || below[x] != id;
+      const bool is_silhouette = ids[std::max(x - 1, 0)] != id || ids[std::min(x + 1, width - 1)] != id || above[x] != id || below[x] != id;
       float radiance = 0, cosine = 0;
       if (id >= 0) {
         const View& view = views_[static_cast<std::size_t>(id)];

@@ -37,20 +37,18 @@ Surface& Scene::add(const Eigen::Vector3d& origin, const Eigen::Vector3d& u_axis
   return surfaces.back();
 }
 
-Surface& Scene::add_upright(const Placement& place, double x0, double y0, double x1, double y1, double z0, double z1,
-                            const Skin& skin, int room) {
+Surface& Scene::add_upright(const Placement& place, double x0, double y0, double x1, double y1, double z0, double z1, const Skin& skin,
+                            int room) {
   const double width = std::hypot(x1 - x0, y1 - y0);
-  return add(place.point(x0, y0, z0), place.direction((x1 - x0) / width, (y1 - y0) / width), Eigen::Vector3d::UnitZ(), width,
-             z1 - z0, skin, room);
+  return add(place.point(x0, y0, z0), place.direction((x1 - x0) / width, (y1 - y0) / width), Eigen::Vector3d::UnitZ(), width, z1 - z0, skin,
+             room);
 }
 
-Surface& Scene::add_floor(const Placement& place, double x0, double y0, double x1, double y1, double z, const Skin& skin,
-                          int room) {
+Surface& Scene::add_floor(const Placement& place, double x0, double y0, double x1, double y1, double z, const Skin& skin, int room) {
   return add(place.point(x0, y0, z), place.direction(1, 0), place.direction(0, 1), x1 - x0, y1 - y0, skin, room);
 }
 
-Surface& Scene::add_ceiling(const Placement& place, double x0, double y0, double x1, double y1, double z, const Skin& skin,
-                            int room) {
+Surface& Scene::add_ceiling(const Placement& place, double x0, double y0, double x1, double y1, double z, const Skin& skin, int room) {
   return add(place.point(x0, y1, z), place.direction(1, 0), place.direction(0, -1), x1 - x0, y1 - y0, skin, room);
 }
 

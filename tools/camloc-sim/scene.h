@@ -68,8 +68,8 @@ class Scene {
   DayLight day_light;
 
   /// A rectangle; returns it for further settings. Texture coordinates start at its origin.
-  Surface& add(const Eigen::Vector3d& origin, const Eigen::Vector3d& u_axis, const Eigen::Vector3d& v_axis, double width,
-               double height, const Skin& skin, int room);
+  Surface& add(const Eigen::Vector3d& origin, const Eigen::Vector3d& u_axis, const Eigen::Vector3d& v_axis, double width, double height,
+               const Skin& skin, int room);
   /// Upright rectangle from (x0, y0) to (x1, y1) in the placement, left to right as its viewer sees it, between two heights.
   Surface& add_upright(const Placement& place, double x0, double y0, double x1, double y1, double z0, double z1, const Skin& skin,
                        int room);

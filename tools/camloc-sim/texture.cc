@@ -39,8 +39,7 @@ float paint(const Skin& s, const Point& p) {
 
 float carpet(const Skin& s, const Point& p) {
   return s.tone + 0.05F * octaves(p.u, p.v, 1.4F, 1, 0.6F, s.seed, p.foot) +
-         0.13F * octaves(p.u, p.v, 0.06F, 4, 0.75F, s.seed + 3, p.foot) -
-         0.20F * specks(p, 0.22F, 0.3F, 0.006F, 0.02F, s.seed + 5);
+         0.13F * octaves(p.u, p.v, 0.06F, 4, 0.75F, s.seed + 3, p.foot) - 0.20F * specks(p, 0.22F, 0.3F, 0.006F, 0.02F, s.seed + 5);
 }
 
 float tiles(const Skin& s, const Point& p) {
@@ -75,8 +74,7 @@ float ribs(const Skin& s, const Point& p) {
 }
 
 float fabric(const Skin& s, const Point& p) {
-  return s.tone + 0.07F * octaves(p.u, p.v, 0.04F, 4, 0.8F, s.seed, p.foot) +
-         0.06F * octaves(p.u, p.v, 0.3F, 2, 0.5F, s.seed + 1, p.foot);
+  return s.tone + 0.07F * octaves(p.u, p.v, 0.04F, 4, 0.8F, s.seed, p.foot) + 0.06F * octaves(p.u, p.v, 0.3F, 2, 0.5F, s.seed + 1, p.foot);
 }
 
 float cloth(const Skin& s, const Point& p) {
@@ -86,8 +84,7 @@ float cloth(const Skin& s, const Point& p) {
 }
 
 float window(const Skin& s, const Point& p, float width, float height) {
-  const float horizon =
-      height * range(hash32(s.seed, 1), 0.35F, 0.6F) + 0.12F * octaves(p.u, 0.0F, 0.6F, 4, 0.6F, s.seed + 2, p.foot);
+  const float horizon = height * range(hash32(s.seed, 1), 0.35F, 0.6F) + 0.12F * octaves(p.u, 0.0F, 0.6F, 4, 0.6F, s.seed + 2, p.foot);
   const float tree = clamp01(0.5F + (horizon - p.v) / std::max(p.foot, 0.02F));
   const float sky = s.tone + 0.1F * octaves(p.u, p.v, 0.8F, 3, 0.5F, s.seed + 3, p.foot);
   const float leaves = 0.55F * s.tone + 0.2F * octaves(p.u, p.v, 0.15F, 5, 0.75F, s.seed + 4, p.foot);

@@ -28,7 +28,6 @@ struct Passer {
 /// Nobody on day 1. Otherwise people come towards the camera, walk ahead of it, or stand about.
 [[nodiscard]] std::vector<Passer> plan_passers(const FloorPlan& plan, const Trajectory& trajectory, const SceneOptions& options);
 /// Surfaces of everybody around at a time, light baked.
-[[nodiscard]] std::vector<Surface> people_at(const FloorPlan& plan, const Scene& scene, const std::vector<Passer>& passers,
-                                             double time_s);
+[[nodiscard]] std::vector<Surface> people_at(const FloorPlan& plan, const Scene& scene, const std::vector<Passer>& passers, double time_s);
 
 }  // namespace camloc::sim

@@ -36,12 +36,15 @@ double angle_deg(const Intrinsics& k, const Eigen::Vector2d& from, const Eigen::
 std::string format_intrinsics(const char* title, const Intrinsics& k) {
   std::string text = text_of("%-12s%d x %d px, fx %.3f fy %.3f cx %.3f cy %.3f px\n", title, k.width, k.height, k.fx, k.fy, k.cx, k.cy);
   const double middle_x = 0.5 * (k.width - 1), middle_y = 0.5 * (k.height - 1);
-  append_text(&text, "            field of view %.1f x %.1f deg, %.1f deg from corner to corner\n", angle_deg(k, {-0.5, middle_y}, {k.width - 0.5, middle_y}),
-              angle_deg(k, {middle_x, -0.5}, {middle_x, k.height - 0.5}), angle_deg(k, {-0.5, -0.5}, {k.width - 0.5, k.height - 0.5}));
+  append_text(&text, "            field of view %.1f x %.1f deg, %.1f deg from corner to corner\n",
+              angle_deg(k, {-0.5, middle_y}, {k.width - 0.5, middle_y}), angle_deg(k, {middle_x, -0.5}, {middle_x, k.height - 0.5}),
+              angle_deg(k, {-0.5, -0.5}, {k.width - 0.5, k.height - 0.5}));
   const auto& d = k.distortion;
   if (k.lens == LensModel::kPinhole) return text + "            no distortion\n";
-  if (k.lens == LensModel::kBrownConrady) append_text(&text, "            brown_conrady k1 %.6g k2 %.6g p1 %.6g p2 %.6g k3 %.6g\n", d[0], d[1], d[2], d[3], d[4]);
-  if (k.lens == LensModel::kEquidistant) append_text(&text, "            equidistant k1 %.6g k2 %.6g k3 %.6g k4 %.6g\n", d[0], d[1], d[2], d[3]);
+  if (k.lens == LensModel::kBrownConrady)
+    append_text(&text, "            brown_conrady k1 %.6g k2 %.6g p1 %.6g p2 %.6g k3 %.6g\n", d[0], d[1], d[2], d[3], d[4]);
+  if (k.lens == LensModel::kEquidistant)
+    append_text(&text, "            equidistant k1 %.6g k2 %.6g k3 %.6g k4 %.6g\n", d[0], d[1], d[2], d[3]);
   double most_px = 0;
   bool is_invertible = true;
   for (const double x : {0.0, k.width - 1.0}) {
@@ -51,26 +54,31 @@ std::string format_intrinsics(const char* title, const Intrinsics& k) {
       is_invertible = is_invertible && k.is_invertible_at({x, y});
     }
   }
-  append_text(&text, "            moves the corners of the image by up to %.1f px%s\n", most_px, is_invertible ? "" : "; NOT INVERTIBLE in a corner: calibrate again");
+  append_text(&text, "            moves the corners of the image by up to %.1f px%s\n", most_px,
+              is_invertible ? "" : "; NOT INVERTIBLE in a corner: calibrate again");
   return text;
 }
 
 std::string format_depth(const RgbdCamera& camera) {
-  std::string text = text_of("depth       %s, %g m a unit, used from %.2f to %.2f m\n", camera.is_depth_registered ? "registered to colour" : "in its own pixels",
-                             camera.depth_unit_m, camera.min_depth_m, camera.max_depth_m);
+  std::string text = text_of("depth       %s, %g m a unit, used from %.2f to %.2f m\n",
+                             camera.is_depth_registered ? "registered to colour" : "in its own pixels", camera.depth_unit_m,
+                             camera.min_depth_m, camera.max_depth_m);
   append_text(&text, "            noise");
-  for (const double z_m : {1.0, 2.0, 4.0}) append_text(&text, " %.1f mm at %.0f m%s", 1e3 * camera.depth_noise.sigma_m(z_m), z_m, z_m < 4 ? "," : "\n");
+  for (const double z_m : {1.0, 2.0, 4.0})
+    append_text(&text, " %.1f mm at %.0f m%s", 1e3 * camera.depth_noise.sigma_m(z_m), z_m, z_m < 4 ? "," : "\n");
   if (camera.is_depth_registered) return text;
   text += format_intrinsics("depth lens", camera.depth);
   const Eigen::Vector3d t = 1e3 * camera.T_color_depth.translation, r = log_so3(camera.T_color_depth.rotation);
-  append_text(&text, "            at %.1f %.1f %.1f mm of the colour camera, turned by %.2f %.2f %.2f deg\n", t.x(), t.y(), t.z(), degrees(r.x()), degrees(r.y()), degrees(r.z()));
+  append_text(&text, "            at %.1f %.1f %.1f mm of the colour camera, turned by %.2f %.2f %.2f deg\n", t.x(), t.y(), t.z(),
+              degrees(r.x()), degrees(r.y()), degrees(r.z()));
   return text;
 }
 
 Status show(const CameraArguments& arguments) {
   const Result<RgbdCamera> camera = read_camera_file(arguments.path);
   if (!camera) return camera.status();
-  std::printf("camera      %s\n%s%s", camera->name.c_str(), format_intrinsics("colour", camera->color).c_str(), format_depth(*camera).c_str());
+  std::printf("camera      %s\n%s%s", camera->name.c_str(), format_intrinsics("colour", camera->color).c_str(),
+              format_depth(*camera).c_str());
   if (camera->poses_are_of_depth_camera) std::printf("poses       recorded ones belong to the depth camera\n");
   return Status::ok();
 }
@@ -122,13 +130,17 @@ std::vector<FoundCamera> find_openni2(const Openni2Installation& openni2) {
 Status list(const CameraArguments& arguments) {
   const Openni2Installation openni2 = inspect_openni2();
   std::vector<FoundCamera> cameras = find_kinects();
-  for (const std::vector<FoundCamera>& family : {find_v4l2(), find_openni2(openni2)}) cameras.insert(cameras.end(), family.begin(), family.end());
+  for (const std::vector<FoundCamera>& family : {find_v4l2(), find_openni2(openni2)})
+    cameras.insert(cameras.end(), family.begin(), family.end());
   if (arguments.is_json) {
     nlohmann::ordered_json document{{"cameras", nlohmann::ordered_json::array()}, {"openni2_problem", openni2.problem}};
-    for (const FoundCamera& camera : cameras) document["cameras"].push_back({{"url", camera.url}, {"name", camera.name}, {"where", camera.where}, {"problem", camera.problem}});
+    for (const FoundCamera& camera : cameras)
+      document["cameras"].push_back({{"url", camera.url}, {"name", camera.name}, {"where", camera.where}, {"problem", camera.problem}});
     std::printf("%s\n", document.dump(1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   } else {
-    for (const FoundCamera& camera : cameras) std::printf("%-32s %s (%s)%s%s\n", camera.url.c_str(), camera.name.c_str(), camera.where.c_str(), camera.problem.empty() ? "" : ": ", camera.problem.c_str());
+    for (const FoundCamera& camera : cameras)
+      std::printf("%-32s %s (%s)%s%s\n", camera.url.c_str(), camera.name.c_str(), camera.where.c_str(), camera.problem.empty() ? "" : ": ",
+                  camera.problem.c_str());
     if (!openni2.problem.empty()) std::printf("%-32s %s\n", "openni2://", openni2.problem.c_str());
   }
   if (!cameras.empty()) return Status::ok();
@@ -151,7 +163,10 @@ void add_camera_command(CLI::App& app, int& exit_code) {
   import_command->add_option("FILE", arguments->path, "Calibration to read")->required();
   import_command->add_option("--out", arguments->out_path, "Camera file to write")->required();
   import_command->add_option("--name", arguments->name, "Name of the camera");
-  import_command->add_option("--depth-unit", arguments->depth_unit_m, "Metres a unit of the depth image, which these files do not say (default 0.001)")->check(CLI::Range(1e-5, 0.1));
+  import_command
+      ->add_option("--depth-unit", arguments->depth_unit_m,
+                   "Metres a unit of the depth image, which these files do not say (default 0.001)")
+      ->check(CLI::Range(1e-5, 0.1));
   import_command->callback([arguments, &exit_code] { exit_code = report(import(*arguments)); });
 }
 

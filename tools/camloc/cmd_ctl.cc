@@ -19,9 +19,7 @@ struct CtlOptions {
   int timeout_ms = 10000;
 };
 
-std::string plain_text(const nlohmann::ordered_json& value) {
-  return value.is_string() ? value.get<std::string>() : value.dump();
-}
+std::string plain_text(const nlohmann::ordered_json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
 
 /// One "key  value" line each; what is nested is indented by its parent's name.
 void print_table(const nlohmann::ordered_json& object, const std::string& prefix) {

@@ -42,21 +42,25 @@ void examine_usb(const Settings& settings, const DaemonAnswer& daemon, std::vect
   const SystemFolders folders;
   const std::string scheme = settings.scheme();
   const std::vector<UsbDevice> devices = list_usb_devices(folders);
-  if (std::any_of(devices.begin(), devices.end(), is_of_a_camera) || scheme == "kinect") checks->push_back(check_usb_presence(devices, scheme));
+  if (std::any_of(devices.begin(), devices.end(), is_of_a_camera) || scheme == "kinect")
+    checks->push_back(check_usb_presence(devices, scheme));
   if (std::any_of(devices.begin(), devices.end(), is_camera)) {
     checks->push_back(check_usb_rights(devices, folders, group_of_devices()));
     checks->push_back(check_usb_driver(devices, scheme, daemon.has_value()));
     checks->push_back(check_usb_bandwidth(devices, folders));
   }
   const auto is_openni2 = [](const UsbDevice& device) { return role_of(device) == UsbRole::kOpenni2Camera; };
-  if (scheme == "openni2" || std::any_of(devices.begin(), devices.end(), is_openni2)) checks->push_back(check_openni2(inspect_openni2(), scheme));
+  if (scheme == "openni2" || std::any_of(devices.begin(), devices.end(), is_openni2))
+    checks->push_back(check_openni2(inspect_openni2(), scheme));
 }
 
 void examine_service(std::vector<Check>* checks) {
   std::error_code error;
   const auto systemctl = find_program("systemctl");
   if (!systemctl || !std::filesystem::is_directory("/run/systemd/system", error)) return;
-  const auto shown = run_program(*systemctl, {"show", "camlocd.service", "--property=LoadState,ActiveState,SubState,Result,NRestarts,UnitFileState"}, std::chrono::seconds(5));
+  const auto shown =
+      run_program(*systemctl, {"show", "camlocd.service", "--property=LoadState,ActiveState,SubState,Result,NRestarts,UnitFileState"},
+                  std::chrono::seconds(5));
   if (shown) checks->push_back(check_service(shown->out));
 }
 
@@ -116,7 +120,8 @@ int run(const DoctorOptions& options) {
 
 void add_doctor_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<DoctorOptions>();
-  CLI::App* command = app.add_subcommand("doctor", "Check configuration, service, map, camera, USB, network, clock, machine; say what to do");
+  CLI::App* command =
+      app.add_subcommand("doctor", "Check configuration, service, map, camera, USB, network, clock, machine; say what to do");
   command->add_option("--config", options->config_path, "configuration of camlocd")->capture_default_str();
   command->add_option("--map", options->map_path, "instead of the configured map");
   command->add_option("--source", options->source_url, "instead of the configured frame source");

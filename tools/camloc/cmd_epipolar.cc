@@ -49,7 +49,8 @@ Result<EstimatedTrajectory> read_mapped(const EpipolarArguments& arguments, cons
 }
 
 /// Each pose of the estimate with the mapped ones that see most of the same.
-std::vector<ViewPair> pair_views(const EstimatedTrajectory& estimate, const EstimatedTrajectory& mapped, const EpipolarArguments& arguments) {
+std::vector<ViewPair> pair_views(const EstimatedTrajectory& estimate, const EstimatedTrajectory& mapped,
+                                 const EpipolarArguments& arguments) {
   const auto min_gap_ns = static_cast<std::int64_t>(1e9 * arguments.min_gap_s);
   std::vector<Rigid3> poses;
   for (const EstimatedPose& pose : mapped.poses) poses.push_back(pose.T_map_camera);
@@ -84,11 +85,12 @@ Result<std::string> frames_of(const std::vector<ViewPair>& pairs, const Epipolar
     if (wanted_ns.erase(sequence->frames[i].stamp_ns) > 0) frames.insert(i);
   }
   if (wanted_ns.empty()) return selection_of(frames);
-  return Status(ErrorCode::kInvalid, arguments.sequence_path + ": has no frame at the times of " + std::to_string(wanted_ns.size()) + " of " +
-                                         std::to_string(num_wanted) + " poses: is it the recording that the trajectories are of?");
+  return Status(ErrorCode::kInvalid, arguments.sequence_path + ": has no frame at the times of " + std::to_string(wanted_ns.size()) +
+                                         " of " + std::to_string(num_wanted) + " poses: is it the recording that the trajectories are of?");
 }
 
-Status extract_features(const std::string& selection, const EpipolarArguments& arguments, const RgbdCamera& camera, const OrbOptions& orb, Views* views) {
+Status extract_features(const std::string& selection, const EpipolarArguments& arguments, const RgbdCamera& camera, const OrbOptions& orb,
+                        Views* views) {
   auto source = open_frame_source(with_selection(arguments.sequence_path, selection));
   if (!source) return source.status();
   ViewExtractor extractor(camera, orb);
@@ -112,8 +114,8 @@ Status extract_features(const std::string& selection, const EpipolarArguments& a
 }
 
 struct Agreement {
-  std::size_t num_pairs = 0, num_poses = 0;   ///< image pairs that share enough, and poses of the estimate with one
-  double median_px = 0, p90_px = 0;           ///< of the pairs' medians
+  std::size_t num_pairs = 0, num_poses = 0;  ///< image pairs that share enough, and poses of the estimate with one
+  double median_px = 0, p90_px = 0;          ///< of the pairs' medians
 };
 
 Agreement measure(const std::vector<ViewPair>& pairs, const Views& views, EpipolarMeter* meter) {
@@ -135,7 +137,9 @@ Agreement measure(const std::vector<ViewPair>& pairs, const Views& views, Epipol
 
 void print(const Agreement& agreement, std::size_t num_poses, bool is_json) {
   if (is_json) {
-    const nlohmann::ordered_json json{{"poses", num_poses}, {"poses_compared", agreement.num_poses}, {"image_pairs", agreement.num_pairs},
+    const nlohmann::ordered_json json{{"poses", num_poses},
+                                      {"poses_compared", agreement.num_poses},
+                                      {"image_pairs", agreement.num_pairs},
                                       {"epipolar_error_px", {{"median", agreement.median_px}, {"p90", agreement.p90_px}}}};
     std::printf("%s\n", json.dump(1).c_str());
     return;
@@ -146,7 +150,8 @@ void print(const Agreement& agreement, std::size_t num_poses, bool is_json) {
 }
 
 Status nothing_in_common(const EpipolarArguments& arguments) {
-  return {ErrorCode::kNotFound, arguments.estimate_path + ": no two images of these poses see the same things; give --mapped a walk through the same place"};
+  return {ErrorCode::kNotFound,
+          arguments.estimate_path + ": no two images of these poses see the same things; give --mapped a walk through the same place"};
 }
 
 Status epipolar(const EpipolarArguments& arguments) {
@@ -181,17 +186,23 @@ void add_epipolar_command(CLI::App& app, int& exit_code) {
   command->add_option("--estimate", arguments->estimate_path, "Trajectory in TUM format")->required();
   command->add_option("--sequence", arguments->sequence_path, "Folder of the recording that the trajectories are of")->required();
   command->add_option("--camera", arguments->camera_path, "Calibration: our TOML, or YAML of kalibr, ROS, OpenCV")->required();
-  CLI::Option* mapped = command->add_option("--mapped", arguments->mapped_path,
-                                            "Another trajectory in the same map and recording, e.g. the one that the map build wrote, or a folder "
-                                            "with poses: each pose is compared with the most similar of these (default: with others of the estimate)");
-  command->add_option("--mapped-frames", arguments->mapped_frames, "With a folder: the frames that were mapped, start:stop:step[,...]")->needs(mapped);
-  command->add_option("--partners", arguments->num_partners, "Images that each is compared with")->check(CLI::Range(1, 20))->capture_default_str();
+  CLI::Option* mapped =
+      command->add_option("--mapped", arguments->mapped_path,
+                          "Another trajectory in the same map and recording, e.g. the one that the map build wrote, or a folder "
+                          "with poses: each pose is compared with the most similar of these (default: with others of the estimate)");
+  command->add_option("--mapped-frames", arguments->mapped_frames, "With a folder: the frames that were mapped, start:stop:step[,...]")
+      ->needs(mapped);
+  command->add_option("--partners", arguments->num_partners, "Images that each is compared with")
+      ->check(CLI::Range(1, 20))
+      ->capture_default_str();
   command->add_option("--min-gap-s", arguments->min_gap_s, "Least time between two images that are compared, seconds")
-      ->check(CLI::Range(0.0, 3600.0))->capture_default_str();
+      ->check(CLI::Range(0.0, 3600.0))
+      ->capture_default_str();
   command->add_flag("--json", arguments->is_json, "Print JSON");
-  command->footer("Example: camloc epipolar --estimate traj.tum --mapped walk.tum --sequence recordings/kitchen --camera camera.toml\n"
-                  "Right poses leave what the features are off by, some tenths of a pixel.\n"
-                  "Exit code: 0 done (however large the errors are), 1 failed, 2 wrong usage or configuration.");
+  command->footer(
+      "Example: camloc epipolar --estimate traj.tum --mapped walk.tum --sequence recordings/kitchen --camera camera.toml\n"
+      "Right poses leave what the features are off by, some tenths of a pixel.\n"
+      "Exit code: 0 done (however large the errors are), 1 failed, 2 wrong usage or configuration.");
   command->callback([arguments, &exit_code] { exit_code = report(epipolar(*arguments)); });
 }
 

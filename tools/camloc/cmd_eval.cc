@@ -27,7 +27,7 @@ struct EvalArguments {
 };
 
 Result<RecordedPoses> read_reference(const EvalArguments& arguments, const std::string& path, const std::string& frames,
-                                 const EstimatedTrajectory& estimate) {
+                                     const EstimatedTrajectory& estimate) {
   if (!std::filesystem::is_directory(path)) {
     auto poses = read_tum_trajectory(path);
     if (!poses) return poses.status();
@@ -43,7 +43,9 @@ Result<RecordedPoses> read_reference(const EvalArguments& arguments, const std::
   return read_recorded_poses(path, frames, T_color_depth);
 }
 
-Json statistics_json(const ErrorStatistics& s) { return {{"median", s.median}, {"mean", s.mean}, {"rmse", s.rmse}, {"p90", s.p90}, {"max", s.max}}; }
+Json statistics_json(const ErrorStatistics& s) {
+  return {{"median", s.median}, {"mean", s.mean}, {"rmse", s.rmse}, {"p90", s.p90}, {"max", s.max}};
+}
 
 Json errors_json(const TrajectoryErrors& errors, const EstimatedTrajectory& estimate) {
   Json within;
@@ -55,7 +57,8 @@ Json errors_json(const TrajectoryErrors& errors, const EstimatedTrajectory& esti
             {"rotation_deg", statistics_json(errors.rotation_deg)},
             {"within", within},
             {"misleading", errors.num_misleading},
-            {"misleading_share", errors.num_frames == 0 ? 0.0 : static_cast<double>(errors.num_misleading) / static_cast<double>(errors.num_frames)},
+            {"misleading_share",
+             errors.num_frames == 0 ? 0.0 : static_cast<double>(errors.num_misleading) / static_cast<double>(errors.num_frames)},
             {"nees", nullptr},
             {"inside_95", nullptr},
             {"calibration_suspect", estimate.suspect_focal_scale.has_value()}};
@@ -73,19 +76,25 @@ void print_errors(const TrajectoryErrors& errors, const EstimatedTrajectory& est
               errors.num_frames == 0 ? 0.0 : percent(static_cast<double>(errors.num_localized) / static_cast<double>(errors.num_frames)),
               static_cast<unsigned long long>(errors.num_compared));
   std::printf("              %10s %10s %10s %10s %10s\n", "median", "mean", "rmse", "p90", "max");
-  const auto row = [](const char* name, const ErrorStatistics& s) { std::printf("%-13s %10.4f %10.4f %10.4f %10.4f %10.4f\n", name, s.median, s.mean, s.rmse, s.p90, s.max); };
+  const auto row = [](const char* name, const ErrorStatistics& s) {
+    std::printf("%-13s %10.4f %10.4f %10.4f %10.4f %10.4f\n", name, s.median, s.mean, s.rmse, s.p90, s.max);
+  };
   row("translation m", errors.translation_m);
   row("rotation deg", errors.rotation_deg);
-  for (std::size_t i = 0; i < kErrorLimits.size(); ++i) std::printf("within %-12s %6.1f %% of all frames\n", kErrorLimits[i].name, percent(errors.share_within[i]));
-  std::printf("misleading    %llu (localized, but farther off than 25 cm or 10 deg)\n", static_cast<unsigned long long>(errors.num_misleading));
+  for (std::size_t i = 0; i < kErrorLimits.size(); ++i)
+    std::printf("within %-12s %6.1f %% of all frames\n", kErrorLimits[i].name, percent(errors.share_within[i]));
+  std::printf("misleading    %llu (localized, but farther off than 25 cm or 10 deg)\n",
+              static_cast<unsigned long long>(errors.num_misleading));
   if (errors.num_with_covariance > 0) {
-    std::printf("covariance    NEES mean %.2f median %.2f (honest: 6, 5.35), %.1f %% inside the 95 %% ellipsoid\n", errors.nees_mean, errors.nees_median,
-                percent(errors.share_inside_95));
+    std::printf("covariance    NEES mean %.2f median %.2f (honest: 6, 5.35), %.1f %% inside the 95 %% ellipsoid\n", errors.nees_mean,
+                errors.nees_median, percent(errors.share_inside_95));
   }
-  if (estimate.suspect_focal_scale) std::printf("WARNING       calibration: focal length should be %.3f times the one used\n", *estimate.suspect_focal_scale);
+  if (estimate.suspect_focal_scale)
+    std::printf("WARNING       calibration: focal length should be %.3f times the one used\n", *estimate.suspect_focal_scale);
 }
 
-Status draw(const EvalArguments& arguments, const EstimatedTrajectory& estimate, const RecordedPoses& reference, const TrajectoryErrors& errors) {
+Status draw(const EvalArguments& arguments, const EstimatedTrajectory& estimate, const RecordedPoses& reference,
+            const TrajectoryErrors& errors) {
   std::optional<MapView> map;
   if (!arguments.map_path.empty()) {
     auto opened = MapView::open(arguments.map_path);
@@ -102,9 +111,9 @@ Status draw(const EvalArguments& arguments, const EstimatedTrajectory& estimate,
     view.error_m.push_back(truth ? (truth->translation - T.translation).norm() : 0.0);
   }
   char title[160];
-  std::snprintf(title, sizeof title, "%llu of %llu frames localized, median %.1f cm / %.2f deg, %llu misleading", static_cast<unsigned long long>(errors.num_localized),
-                static_cast<unsigned long long>(errors.num_frames), 100.0 * errors.translation_m.median, errors.rotation_deg.median,
-                static_cast<unsigned long long>(errors.num_misleading));
+  std::snprintf(title, sizeof title, "%llu of %llu frames localized, median %.1f cm / %.2f deg, %llu misleading",
+                static_cast<unsigned long long>(errors.num_localized), static_cast<unsigned long long>(errors.num_frames),
+                100.0 * errors.translation_m.median, errors.rotation_deg.median, static_cast<unsigned long long>(errors.num_misleading));
   view.title = title;
   return write_top_view(view, arguments.png_path);
 }
@@ -114,7 +123,8 @@ ReferencePose lookup(const RecordedPoses& reference) {
 }
 
 /// The motion to apply to the estimate, by itself or by another trajectory in the same frame.
-Result<std::optional<Rigid3>> find_alignment(const EvalArguments& arguments, const EstimatedTrajectory& estimate, const RecordedPoses& reference) {
+Result<std::optional<Rigid3>> find_alignment(const EvalArguments& arguments, const EstimatedTrajectory& estimate,
+                                             const RecordedPoses& reference) {
   using Alignment = std::optional<Rigid3>;
   if (arguments.align_by_path.empty()) {
     if (arguments.align == "se3") return Alignment(align_by_positions(estimate, lookup(reference)));
@@ -129,7 +139,8 @@ Result<std::optional<Rigid3>> find_alignment(const EvalArguments& arguments, con
   const auto num_common = std::count_if(other->poses.begin(), other->poses.end(), [&](const EstimatedPose& pose) {
     return pose_at(other_reference->poses, pose.stamp_ns).has_value();
   });
-  if (num_common < 3) return Status(ErrorCode::kInvalid, "--align-by " + arguments.align_by_path + ": has no poses at the times of " + path);
+  if (num_common < 3)
+    return Status(ErrorCode::kInvalid, "--align-by " + arguments.align_by_path + ": has no poses at the times of " + path);
   return Alignment(align_by_poses(*other, lookup(*other_reference)));
 }
 
@@ -142,18 +153,22 @@ Status eval(const EvalArguments& arguments) {
   auto reference = read_reference(arguments, arguments.reference_path, arguments.frames, *estimate);
   if (!reference) return reference.status();
   const bool is_counted = estimate->num_frames.has_value() && arguments.frames.empty();
-  const std::uint64_t num_frames = is_counted ? *estimate->num_frames : std::max<std::uint64_t>(reference->num_frames, estimate->poses.size());
+  const std::uint64_t num_frames =
+      is_counted ? *estimate->num_frames : std::max<std::uint64_t>(reference->num_frames, estimate->poses.size());
   const auto alignment = find_alignment(arguments, *estimate, *reference);
   if (!alignment) return alignment.status();
   const TrajectoryErrors errors = compare(*estimate, lookup(*reference), num_frames, alignment.value());
   if (errors.num_compared == 0 && errors.num_localized > 0) {
-    return {ErrorCode::kInvalid, arguments.reference_path + ": has no pose at the times of " + arguments.estimate_path + ": is it of the same recording?"};
+    return {ErrorCode::kInvalid,
+            arguments.reference_path + ": has no pose at the times of " + arguments.estimate_path + ": is it of the same recording?"};
   }
   if (!arguments.png_path.empty()) {
     if (Status status = draw(arguments, *estimate, *reference, errors); !status) return status;
   }
-  if (arguments.is_json) std::printf("%s\n", errors_json(errors, *estimate).dump(1).c_str());
-  else print_errors(errors, *estimate);
+  if (arguments.is_json)
+    std::printf("%s\n", errors_json(errors, *estimate).dump(1).c_str());
+  else
+    print_errors(errors, *estimate);
   return Status::ok();
 }
 
@@ -163,21 +178,29 @@ void add_eval_command(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<EvalArguments>();
   CLI::App* command = app.add_subcommand("eval", "Compare a trajectory with a reference");
   command->add_option("--estimate", arguments->estimate_path, "Trajectory in TUM format")->required();
-  command->add_option("--reference", arguments->reference_path, "Trajectory in TUM format, or folder of a recording with poses")->required();
-  command->add_option("--align", arguments->align, "none: same frame; se3: take out the rigid motion that fits positions best (absolute trajectory error); poses: "
-                                                 "the one that fits positions and orientations")
-      ->check(CLI::IsMember({"none", "se3", "poses"}))->capture_default_str();
-  CLI::Option* align_by = command->add_option("--align-by", arguments->align_by_path,
-                                              "Take out the motion that fits another trajectory in the same map to its reference, e.g. the one "
-                                              "that the map build wrote");
-  command->add_option("--align-reference", arguments->align_reference_path, "Reference of --align-by (default: --reference)")->needs(align_by);
+  command->add_option("--reference", arguments->reference_path, "Trajectory in TUM format, or folder of a recording with poses")
+      ->required();
+  command
+      ->add_option("--align", arguments->align,
+                   "none: same frame; se3: take out the rigid motion that fits positions best (absolute trajectory error); poses: "
+                   "the one that fits positions and orientations")
+      ->check(CLI::IsMember({"none", "se3", "poses"}))
+      ->capture_default_str();
+  CLI::Option* align_by =
+      command->add_option("--align-by", arguments->align_by_path,
+                          "Take out the motion that fits another trajectory in the same map to its reference, e.g. the one "
+                          "that the map build wrote");
+  command->add_option("--align-reference", arguments->align_reference_path, "Reference of --align-by (default: --reference)")
+      ->needs(align_by);
   command->add_option("--frames", arguments->frames, "With a reference folder: the frames that were tried, start:stop:step[,...]");
-  command->add_option("--camera", arguments->camera_path, "Camera file that says whose poses the folder has (default: as noted in the estimate)");
+  command->add_option("--camera", arguments->camera_path,
+                      "Camera file that says whose poses the folder has (default: as noted in the estimate)");
   CLI::Option* png = command->add_option("--png", arguments->png_path, "Write a top view of map, reference and estimate");
   command->add_option("--map", arguments->map_path, "Map to draw in the picture")->needs(png);
   command->add_flag("--json", arguments->is_json, "Print JSON");
-  command->footer("Example: camloc eval --estimate traj.tum --reference recordings/kitchen --map kitchen.cmap --png result.png\n"
-                  "Exit code: 0 done (however large the errors are), 1 failed, 2 wrong usage or configuration.");
+  command->footer(
+      "Example: camloc eval --estimate traj.tum --reference recordings/kitchen --map kitchen.cmap --png result.png\n"
+      "Exit code: 0 done (however large the errors are), 1 failed, 2 wrong usage or configuration.");
   command->callback([arguments, &exit_code] { exit_code = report(eval(*arguments)); });
 }
 

@@ -67,14 +67,12 @@ std::vector<Convention> conventions() {
 
 const char* handedness(const Matrix3d& axes) { return axes.determinant() > 0 ? "right-handed" : "LEFT-handed"; }
 
-void print_vector(const char* name, const Vector3d& v) {
-  std::printf("  %-32s = [%+.4f %+.4f %+.4f]\n", name, v.x(), v.y(), v.z());
-}
+void print_vector(const char* name, const Vector3d& v) { std::printf("  %-32s = [%+.4f %+.4f %+.4f]\n", name, v.x(), v.y(), v.z()); }
 
 void print_matrix(const char* name, const Eigen::Matrix4d& matrix) {
   for (int row = 0; row < 4; ++row) {
-    std::printf("  %-32s %s [%+.4f %+.4f %+.4f %+.4f]\n", row == 0 ? name : "", row == 0 ? "=" : " ", matrix(row, 0),
-                matrix(row, 1), matrix(row, 2), matrix(row, 3));
+    std::printf("  %-32s %s [%+.4f %+.4f %+.4f %+.4f]\n", row == 0 ? name : "", row == 0 ? "=" : " ", matrix(row, 0), matrix(row, 1),
+                matrix(row, 2), matrix(row, 3));
   }
 }
 
@@ -84,14 +82,12 @@ void print_transforms(const Example& example) {
   std::printf(
       "T_a_b is defined by p_a = T_a_b * p_b. T_map_camera is the camera's pose in the map; its translation is the camera "
       "centre.\n\n");
-  std::printf(
-      "Example: a map with z up; a camera 1.6 m above the floor that looks along x of the map, turned 20 deg to the left.\n");
+  std::printf("Example: a map with z up; a camera 1.6 m above the floor that looks along x of the map, turned 20 deg to the left.\n");
   print_matrix("T_map_camera", T_map_camera.matrix());
   print_matrix("T_camera_map (the \"view matrix\")", T_map_camera.inverse().matrix());
-  std::printf("  %-32s = [%+.4f %+.4f %+.4f %+.4f]   LCM (pose_t, bot_core), Eigen's constructor, COLMAP\n",
-              "rotation as w x y z", q.w(), q.x(), q.y(), q.z());
-  std::printf("  %-32s = [%+.4f %+.4f %+.4f %+.4f]   TUM files, ROS messages\n", "rotation as x y z w", q.x(), q.y(), q.z(),
-              q.w());
+  std::printf("  %-32s = [%+.4f %+.4f %+.4f %+.4f]   LCM (pose_t, bot_core), Eigen's constructor, COLMAP\n", "rotation as w x y z", q.w(),
+              q.x(), q.y(), q.z());
+  std::printf("  %-32s = [%+.4f %+.4f %+.4f %+.4f]   TUM files, ROS messages\n", "rotation as x y z w", q.x(), q.y(), q.z(), q.w());
   std::printf("  %-32s = %s\n\n", "TUM line at t = 1 s", format_tum_line(1'000'000'000, T_map_camera).c_str());
 }
 
@@ -102,30 +98,29 @@ void print_projection(const Example& example) {
   print_vector("p_map", example.p_map);
   print_vector("p_camera = T_camera_map * p_map", p_camera);
   print_vector("T_map_camera * p_camera", example.T_map_camera * p_camera);
-  std::printf("  %-32s = %.2f + %.0f * %+.4f / %.4f = %.2f   (column, to the right)\n", "u = cx + fx * x / z",
-              example.intrinsics.cx, example.intrinsics.fx, p_camera.x(), p_camera.z(), pixel.x());
+  std::printf("  %-32s = %.2f + %.0f * %+.4f / %.4f = %.2f   (column, to the right)\n", "u = cx + fx * x / z", example.intrinsics.cx,
+              example.intrinsics.fx, p_camera.x(), p_camera.z(), pixel.x());
   std::printf("  %-32s = %.2f + %.0f * %+.4f / %.4f = %.2f   (row, downwards)\n\n", "v = cy + fy * y / z", example.intrinsics.cy,
               example.intrinsics.fy, p_camera.y(), p_camera.z(), pixel.y());
 
   std::printf("The same point in the camera axes of others:\n");
   for (const auto& convention : conventions()) {
     const Vector3d p = convention.camera_from_other.transpose() * p_camera;
-    std::printf("  %-28s %-27s %-13s [%+.4f %+.4f %+.4f] m\n", convention.name, convention.axes,
-                handedness(convention.camera_from_other), p.x(), p.y(), p.z());
+    std::printf("  %-28s %-27s %-13s [%+.4f %+.4f %+.4f] m\n", convention.name, convention.axes, handedness(convention.camera_from_other),
+                p.x(), p.y(), p.z());
   }
   std::printf("  Unreal counts in centimetres. A left-handed convention is a mirror image: no rotation leads there.\n\n");
 }
 
 void print_covariance(const Example& example) {
-  const Rigid3 estimate{exp_so3({0, 0, 0.01}) * example.T_map_camera.rotation,
-                        example.T_map_camera.translation + Vector3d(0.02, 0, 0)};
+  const Rigid3 estimate{exp_so3({0, 0, 0.01}) * example.T_map_camera.rotation, example.T_map_camera.translation + Vector3d(0.02, 0, 0)};
   const Vector6d error = pose_error(example.T_map_camera, estimate);
   std::printf(
       "Covariance: 6x6, first position (m), then rotation vector (rad), both in the axes of the map. An estimate 2 cm too far "
       "along\n"
       "x and turned 0.01 rad too far about the map's z has the error\n");
-  std::printf("  %-32s = [%+.4f %+.4f %+.4f  %+.4f %+.4f %+.4f]\n", "pose_error(true, estimate)", error[0], error[1], error[2],
-              error[3], error[4], error[5]);
+  std::printf("  %-32s = [%+.4f %+.4f %+.4f  %+.4f %+.4f %+.4f]\n", "pose_error(true, estimate)", error[0], error[1], error[2], error[3],
+              error[4], error[5]);
 }
 
 nlohmann::json to_json(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }

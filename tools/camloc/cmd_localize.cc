@@ -80,10 +80,12 @@ void print_summary(const std::map<std::string, std::uint64_t>& states, const std
   std::printf("frames      %llu\n", static_cast<unsigned long long>(counts.num_frames));
   if (counts.num_corrupt > 0) std::printf("unreadable  %llu\n", static_cast<unsigned long long>(counts.num_corrupt));
   for (const auto& [state, count] : states) std::printf("%-11s %llu\n", state.c_str(), static_cast<unsigned long long>(count));
-  for (const auto& [reason, count] : reasons) std::printf("  not localized: %s: %llu\n", reason.c_str(), static_cast<unsigned long long>(count));
+  for (const auto& [reason, count] : reasons)
+    std::printf("  not localized: %s: %llu\n", reason.c_str(), static_cast<unsigned long long>(count));
   if (calibration.is_suspect) {
-    std::printf("WARNING     calibration: the images fit the map with a focal length %.1f %% %s than the camera file says; check the camera file\n",
-                100.0 * std::abs(calibration.focal_scale - 1.0), calibration.focal_scale > 1.0 ? "longer" : "shorter");
+    std::printf(
+        "WARNING     calibration: the images fit the map with a focal length %.1f %% %s than the camera file says; check the camera file\n",
+        100.0 * std::abs(calibration.focal_scale - 1.0), calibration.focal_scale > 1.0 ? "longer" : "shorter");
   }
 }
 
@@ -109,8 +111,7 @@ Json document_json(const LocalizeArguments& arguments, const RunLog& log, const 
   return {{"map", arguments.run.map_path},
           {"sequence", arguments.run.sequence_url},
           {"mode", arguments.mode},
-          {"summary",
-           {{"frames", counts.num_frames}, {"unreadable", counts.num_corrupt}, {"states", log.states}, {"calibration", health}}},
+          {"summary", {{"frames", counts.num_frames}, {"unreadable", counts.num_corrupt}, {"states", log.states}, {"calibration", health}}},
           {"frames", log.records}};
 }
 
@@ -169,17 +170,21 @@ void add_localize_command(CLI::App& app, int& exit_code) {
   command->add_option("--frames", arguments->run.frames, "Frames to use: start:stop:step[,...], as Python slices (default: all)");
   command->add_option("--exclude", arguments->run.exclude, "Frames to leave out, same form");
   command->add_option("--mode", arguments->mode, "track: frames follow each other; single: every frame on its own")
-      ->check(CLI::IsMember({"track", "single"}))->capture_default_str();
-  command->add_option("--perturb", arguments->run.perturbations, "Change every image first; may be repeated. gamma=0.5, contrast=0.6, exposure=0.4 (factors), noise=12 (sigma, grey "
-                      "levels), blur=9 (pixels)")
+      ->check(CLI::IsMember({"track", "single"}))
+      ->capture_default_str();
+  command
+      ->add_option("--perturb", arguments->run.perturbations,
+                   "Change every image first; may be repeated. gamma=0.5, contrast=0.6, exposure=0.4 (factors), noise=12 (sigma, grey "
+                   "levels), blur=9 (pixels)")
       ->allow_extra_args(false);
   command->add_option("--json", arguments->json_path, "Also write one record per frame to this file");
   command->add_flag("!--no-depth", arguments->run.use_depth, "Ignore measured depth");
-  command->footer("Example: every 50th frame, each as if the camera had just been switched on\n"
-                  "  camloc localize --map kitchen.cmap --sequence recordings/kitchen --camera 7scenes.toml --frames ::50 \\\n"
-                  "      --mode single --out traj.tum\n"
-                  "Ctrl-C stops after the current frame and writes what there is. Exit code: 0 done, 1 failed or interrupted,\n"
-                  "2 wrong usage or configuration.");
+  command->footer(
+      "Example: every 50th frame, each as if the camera had just been switched on\n"
+      "  camloc localize --map kitchen.cmap --sequence recordings/kitchen --camera 7scenes.toml --frames ::50 \\\n"
+      "      --mode single --out traj.tum\n"
+      "Ctrl-C stops after the current frame and writes what there is. Exit code: 0 done, 1 failed or interrupted,\n"
+      "2 wrong usage or configuration.");
   command->callback([arguments, &exit_code] {
     arguments->run.is_single = arguments->mode == "single";
     exit_code = report(localize(*arguments));

@@ -24,7 +24,9 @@ struct MapArguments {
   bool is_json = false;
 };
 
-double bytes_per_landmark(const MapInfo& info) { return info.num_landmarks == 0 ? 0.0 : static_cast<double>(info.file_bytes) / info.num_landmarks; }
+double bytes_per_landmark(const MapInfo& info) {
+  return info.num_landmarks == 0 ? 0.0 : static_cast<double>(info.file_bytes) / info.num_landmarks;
+}
 
 /// The middle of the keyframes: at the origin of `map`, which may be far from the building, a turn of the datum weighs more.
 PoseWithCovariance middle_in_wcs(const MapView& map) {
@@ -36,7 +38,9 @@ PoseWithCovariance middle_in_wcs(const MapView& map) {
 }
 
 double position_sigma_m(const Matrix6d& covariance) { return std::sqrt(covariance.topLeftCorner<3, 3>().trace() / 3); }
-double turn_sigma_deg(const Matrix6d& covariance) { return std::sqrt(covariance.bottomRightCorner<3, 3>().trace() / 3) * 180.0 / std::numbers::pi; }
+double turn_sigma_deg(const Matrix6d& covariance) {
+  return std::sqrt(covariance.bottomRightCorner<3, 3>().trace() / 3) * 180.0 / std::numbers::pi;
+}
 
 Json datum_json(const MapView& map) {
   if (!map.info().wcs) return nullptr;
@@ -56,8 +60,8 @@ void print_datum(const MapView& map) {
   }
   const PoseWithCovariance middle = middle_in_wcs(map);
   const Eigen::Vector3d& p = middle.pose.translation;
-  std::printf("world frame  set: the middle of the map is at %.3f %.3f %.3f in the site, +- %.3f m and %.3f deg per axis\n", p.x(), p.y(), p.z(),
-              position_sigma_m(middle.covariance), turn_sigma_deg(middle.covariance));
+  std::printf("world frame  set: the middle of the map is at %.3f %.3f %.3f in the site, +- %.3f m and %.3f deg per axis\n", p.x(), p.y(),
+              p.z(), position_sigma_m(middle.covariance), turn_sigma_deg(middle.covariance));
 }
 
 void print_json(const MapView& map, double open_ms) {
@@ -88,12 +92,13 @@ void print_table(const MapView& map, double open_ms) {
   const MapInfo& info = map.info();
   std::printf("map          %s%s%s\n", info.path.c_str(), info.name.empty() ? "" : ", ", info.name.c_str());
   std::printf("id           %016llx, format version %u\n", static_cast<unsigned long long>(info.map_id), info.version);
-  std::printf("size         %.3f MB, %.1f bytes a landmark, opened in %.2f ms\n", 1e-6 * static_cast<double>(info.file_bytes), bytes_per_landmark(info), open_ms);
+  std::printf("size         %.3f MB, %.1f bytes a landmark, opened in %.2f ms\n", 1e-6 * static_cast<double>(info.file_bytes),
+              bytes_per_landmark(info), open_ms);
   std::printf("landmarks    %u with %u descriptors in %u sub-maps\n", info.num_landmarks, info.num_descriptors, info.num_submaps);
   std::printf("keyframes    %u (the minimum set that covers all landmarks), %u words\n", info.num_keyframes, info.num_words);
   if (info.pose_sigma_m > 0) {
-    std::printf("mapping      poses of the mapping are good to %.1f cm and %.2f deg per axis; none that is found in the map is better\n", 100.0 * info.pose_sigma_m,
-                info.pose_sigma_rad * 180.0 / std::numbers::pi);
+    std::printf("mapping      poses of the mapping are good to %.1f cm and %.2f deg per axis; none that is found in the map is better\n",
+                100.0 * info.pose_sigma_m, info.pose_sigma_rad * 180.0 / std::numbers::pi);
   } else {
     std::printf("mapping      how good the poses of the mapping are is not known: too few views of the same place\n");
   }
@@ -106,8 +111,10 @@ Status show_info(const MapArguments& arguments) {
   auto map = MapView::open(arguments.path);
   if (!map) return map.status();
   const double open_ms = 1e-6 * static_cast<double>(monotonic_ns() - started_ns);
-  if (arguments.is_json) print_json(*map, open_ms);
-  else print_table(*map, open_ms);
+  if (arguments.is_json)
+    print_json(*map, open_ms);
+  else
+    print_table(*map, open_ms);
   return Status::ok();
 }
 
@@ -115,7 +122,8 @@ Status verify_map(const MapArguments& arguments) {
   // Opening checks everything: sizes, checksums, every index and range.
   auto map = MapView::open(arguments.path);
   if (!map) return map.status();
-  std::printf("%s: whole: %u landmarks, %u keyframes, all checksums and indices right\n", arguments.path.c_str(), map->info().num_landmarks, map->info().num_keyframes);
+  std::printf("%s: whole: %u landmarks, %u keyframes, all checksums and indices right\n", arguments.path.c_str(), map->info().num_landmarks,
+              map->info().num_keyframes);
   return Status::ok();
 }
 

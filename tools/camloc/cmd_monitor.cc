@@ -44,9 +44,7 @@ double seconds_between(Clock::time_point from, Clock::time_point to) { return st
 class Monitor {
  public:
   explicit Monitor(const MonitorOptions& options)
-      : options_(options),
-        is_screen_(!options.is_json && !options.is_plain && ::isatty(STDOUT_FILENO) == 1),
-        start_(Clock::now()) {}
+      : options_(options), is_screen_(!options.is_json && !options.is_plain && ::isatty(STDOUT_FILENO) == 1), start_(Clock::now()) {}
 
   void on_pose(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
     pose_t pose;
@@ -84,9 +82,8 @@ class Monitor {
     const auto now = Clock::now();
     if (!is_screen_ || seconds_between(last_draw_, now) < 0.1) return;
     last_draw_ = now;
-    state_.rate_hz = arrivals_.size() < 2
-                         ? 0
-                         : static_cast<double>(arrivals_.size() - 1) / seconds_between(arrivals_.front(), arrivals_.back());
+    state_.rate_hz =
+        arrivals_.size() < 2 ? 0 : static_cast<double>(arrivals_.size() - 1) / seconds_between(arrivals_.front(), arrivals_.back());
     state_.seconds_since_pose = silence_s();
     state_.sketch = sketch();
     std::printf("\x1b[H\x1b[J%s", monitor_screen(state_).c_str());
@@ -98,9 +95,7 @@ class Monitor {
 
  private:
   /// Text from a message may be no UTF-8.
-  static std::string dump(const nlohmann::json& record) {
-    return record.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  }
+  static std::string dump(const nlohmann::json& record) { return record.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); }
 
   /// Where in the map, if the daemon's map can be read here and is the one it has open.
   std::string sketch() {
@@ -124,8 +119,7 @@ class Monitor {
   void refuse(const std::string& channel) {
     if (has_refused_) return;
     has_refused_ = true;
-    std::fprintf(stderr, "camloc: messages on %s are of another type or version than this program reads; skipping them\n",
-                 channel.c_str());
+    std::fprintf(stderr, "camloc: messages on %s are of another type or version than this program reads; skipping them\n", channel.c_str());
   }
 
   const MonitorOptions& options_;
@@ -161,8 +155,8 @@ int run(const MonitorOptions& options) {
     }
     if (!has_hinted && options.timeout_s <= 0 && !monitor.has_heard() && monitor.silence_s() > 3) {
       has_hinted = true;
-      std::fprintf(stderr, "camloc: nothing on %s yet, still waiting (%s)\n%s", options.pose_channel.c_str(),
-                   options.lcm_url.c_str(), kHints);
+      std::fprintf(stderr, "camloc: nothing on %s yet, still waiting (%s)\n%s", options.pose_channel.c_str(), options.lcm_url.c_str(),
+                   kHints);
     }
   }
   std::fflush(stdout);

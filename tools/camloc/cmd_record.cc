@@ -48,7 +48,8 @@ class RecordingDisplay {
     const auto now = Clock::now();
     if (progress.dropped > told_dropped_ && now - last_told_ > std::chrono::seconds(1)) {
       line_.say("");
-      print_error("camloc", text_of("writing is slower than the camera: %llu frames dropped so far", static_cast<unsigned long long>(progress.dropped)));
+      print_error("camloc", text_of("writing is slower than the camera: %llu frames dropped so far",
+                                    static_cast<unsigned long long>(progress.dropped)));
       told_dropped_ = progress.dropped;
       last_told_ = now;
     }
@@ -56,7 +57,8 @@ class RecordingDisplay {
     const double rate_hz = seconds > 0 ? static_cast<double>(progress.frames) / seconds : 0;
     line_.show(progress.frames, text_of("%.1f Hz  %.1f MB/s  dropped %llu  queued %d  %.1f GB free", rate_hz,
                                         seconds > 0 ? 1e-6 * static_cast<double>(progress.bytes) / seconds : 0,
-                                        static_cast<unsigned long long>(progress.dropped), progress.queued, 1e-9 * static_cast<double>(progress.free_bytes)));
+                                        static_cast<unsigned long long>(progress.dropped), progress.queued,
+                                        1e-9 * static_cast<double>(progress.free_bytes)));
   }
 
  private:
@@ -77,8 +79,9 @@ Status check_space(const RecordArguments& arguments) {
   const Result<std::uint64_t> free_bytes = free_bytes_at(arguments.out_path);
   if (!free_bytes) return free_bytes.status();
   if (*free_bytes >= arguments.options.min_free_bytes) return Status::ok();
-  return {ErrorCode::kIo, text_of("--out %s: %llu MB free on the disk, of which %llu stay free; free some, or lower --min-free", arguments.out_path.c_str(),
-                                  static_cast<unsigned long long>(*free_bytes / 1'000'000), static_cast<unsigned long long>(arguments.min_free_mb))};
+  return {ErrorCode::kIo,
+          text_of("--out %s: %llu MB free on the disk, of which %llu stay free; free some, or lower --min-free", arguments.out_path.c_str(),
+                  static_cast<unsigned long long>(*free_bytes / 1'000'000), static_cast<unsigned long long>(arguments.min_free_mb))};
 }
 
 void print_count(const char* what, std::uint64_t count) {
@@ -98,15 +101,17 @@ void print_summary(const RecordingSummary& summary, const std::string& path) {
   print_count("unpaired", summary.health.frames_unpaired);
   print_count("lost packets", summary.health.packets_lost);
   if (summary.accelerations > 0) print_count("acceleration", summary.accelerations);
-  if (!summary.has_camera) std::printf("  no camera.toml: the source knows no calibration; copy yours there, or use 'camloc camera calibrate'\n");
+  if (!summary.has_camera)
+    std::printf("  no camera.toml: the source knows no calibration; copy yours there, or use 'camloc camera calibrate'\n");
 }
 
 Status outcome(const RecordingSummary& summary, const std::string& path) {
   if (!summary.end) return summary.end;
   if (summary.frames == 0) return {ErrorCode::kEnd, path + ": no frame was recorded"};
   if (summary.dropped + summary.unwritten == 0) return Status::ok();
-  return {ErrorCode::kIo, text_of("%s: incomplete, %llu frames dropped because writing was too slow; use --jpeg, a faster disk or a larger --queue", path.c_str(),
-                                  static_cast<unsigned long long>(summary.dropped + summary.unwritten))};
+  return {ErrorCode::kIo,
+          text_of("%s: incomplete, %llu frames dropped because writing was too slow; use --jpeg, a faster disk or a larger --queue",
+                  path.c_str(), static_cast<unsigned long long>(summary.dropped + summary.unwritten))};
 }
 
 Status run(RecordArguments arguments) {
@@ -157,12 +162,17 @@ void add_record_command(CLI::App& app, int& exit_code) {
   auto* jpeg = command->add_flag("--jpeg", arguments->format.is_jpeg, "Image as JPEG: a third of the size, not bit-exact");
   command->add_option("--quality", arguments->format.jpeg_quality, "Of the JPEG (default 95)")->check(CLI::Range(1, 100))->needs(jpeg);
   const std::map<std::string, PngCompression> levels{{"fast", PngCompression::kFast}, {"small", PngCompression::kSmall}};
-  command->add_option("--compression", arguments->format.compression, "fast (default), or small: depth takes 3 times the time and 3/4 of the bytes")
+  command
+      ->add_option("--compression", arguments->format.compression,
+                   "fast (default), or small: depth takes 3 times the time and 3/4 of the bytes")
       ->transform(CLI::CheckedTransformer(levels));
-  command->add_option("--queue", arguments->options.queue_frames, "Frames that may wait for the disk (default 60)")->check(CLI::Range(1, 10000));
+  command->add_option("--queue", arguments->options.queue_frames, "Frames that may wait for the disk (default 60)")
+      ->check(CLI::Range(1, 10000));
   command->add_option("--writers", arguments->options.num_writers, "Threads that encode and write (default 2)")->check(CLI::Range(1, 64));
-  command->add_option("--min-free", arguments->min_free_mb, "Stop before less than so many MB are free (default 256)")->check(CLI::Range(1, 100'000'000));
-  command->add_option("--timeout", arguments->options.max_silence_s, "Stop when no frame comes for so many seconds (default 10)")->check(CLI::PositiveNumber);
+  command->add_option("--min-free", arguments->min_free_mb, "Stop before less than so many MB are free (default 256)")
+      ->check(CLI::Range(1, 100'000'000));
+  command->add_option("--timeout", arguments->options.max_silence_s, "Stop when no frame comes for so many seconds (default 10)")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--force", arguments->replaces_old, "Replace the recording in an existing folder");
   command->callback([arguments, &exit_code] { exit_code = report(run(*arguments)); });
 }

@@ -14,12 +14,12 @@ namespace camloc::tools {
 void add_localize_command(CLI::App& app, int& exit_code);
 void add_eval_command(CLI::App& app, int& exit_code);
 void add_epipolar_command(CLI::App& app, int& exit_code);
-void add_map_command(CLI::App& app, int& exit_code);      ///< info and verify; build is the program camloc-map
+void add_map_command(CLI::App& app, int& exit_code);  ///< info and verify; build is the program camloc-map
 void add_monitor_command(CLI::App& app, int& exit_code);
 void add_ctl_command(CLI::App& app, int& exit_code);
 void add_doctor_command(CLI::App& app, int& exit_code);
 void add_frames_command(CLI::App& app, int& exit_code);
-void add_camera_command(CLI::App& app, int& exit_code);   ///< list, show, import; calibrate is the program camloc-camera
+void add_camera_command(CLI::App& app, int& exit_code);  ///< list, show, import; calibrate is the program camloc-camera
 void add_record_command(CLI::App& app, int& exit_code);
 
 /// Prints "camloc: <message>" on stderr; the exit code that belongs to the error.

@@ -23,16 +23,11 @@ struct Command {
 };
 
 constexpr std::array kCommands{
-    Command{"localize", camloc::tools::add_localize_command},
-    Command{"eval", camloc::tools::add_eval_command},
-    Command{"epipolar", camloc::tools::add_epipolar_command},
-    Command{"map", camloc::tools::add_map_command},
-    Command{"camera", camloc::tools::add_camera_command},
-    Command{"record", camloc::tools::add_record_command},
-    Command{"monitor", camloc::tools::add_monitor_command},
-    Command{"ctl", camloc::tools::add_ctl_command},
-    Command{"doctor", camloc::tools::add_doctor_command},
-    Command{"frames", camloc::tools::add_frames_command},
+    Command{"localize", camloc::tools::add_localize_command}, Command{"eval", camloc::tools::add_eval_command},
+    Command{"epipolar", camloc::tools::add_epipolar_command}, Command{"map", camloc::tools::add_map_command},
+    Command{"camera", camloc::tools::add_camera_command},     Command{"record", camloc::tools::add_record_command},
+    Command{"monitor", camloc::tools::add_monitor_command},   Command{"ctl", camloc::tools::add_ctl_command},
+    Command{"doctor", camloc::tools::add_doctor_command},     Command{"frames", camloc::tools::add_frames_command},
 };
 /// Commands of which a part is built in and the rest is in the program camloc-NAME.
 struct SplitCommand {
@@ -65,7 +60,8 @@ bool is_built_in(const CLI::App& app, const std::string& name) {
 }
 
 const SplitCommand* find_split(const std::string& name) {
-  const auto found = std::find_if(kSplitCommands.begin(), kSplitCommands.end(), [&name](const SplitCommand& split) { return name == split.name; });
+  const auto found =
+      std::find_if(kSplitCommands.begin(), kSplitCommands.end(), [&name](const SplitCommand& split) { return name == split.name; });
   return found == kSplitCommands.end() ? nullptr : &*found;
 }
 
@@ -82,8 +78,9 @@ int report_unknown(const SplitCommand& split, const std::string& word) {
   std::vector<std::string> known = split.built_in;
   known.insert(known.end(), split.in_program.begin(), split.in_program.end());
   const std::string name = split.name, closest = camloc::tools::closest_word(word, known);
-  camloc::tools::print_error("camloc", "no command '" + name + " " + word + "'; " +
-                                           (closest.empty() ? "see 'camloc " + name + " --help'" : "did you mean '" + name + " " + closest + "'?"));
+  camloc::tools::print_error("camloc",
+                             "no command '" + name + " " + word + "'; " +
+                                 (closest.empty() ? "see 'camloc " + name + " --help'" : "did you mean '" + name + " " + closest + "'?"));
   return 2;
 }
 

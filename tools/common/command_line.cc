@@ -39,7 +39,8 @@ int parse_command_line(CLI::App& app, int argc, const char* const* argv, bool* i
 
 void print_error(const std::string& program, const std::string& message) {
   std::string line = message;
-  std::replace_if(line.begin(), line.end(), [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }, '?');
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }, '?');
   std::fprintf(stderr, "%s: %s\n", program.c_str(), line.c_str());
 }
 

@@ -24,8 +24,7 @@ Status connect_error(const std::string& path, int error) {
       return {ErrorCode::kUnavailable,
               "no camlocd listens on " + path + "; start it with 'systemctl start camlocd' or name its socket with --socket"};
     case EACCES:
-    case EPERM:
-      return {ErrorCode::kIo, "not permitted to use " + path + "; become a member of the socket's group (see 'ls -l') or root"};
+    case EPERM: return {ErrorCode::kIo, "not permitted to use " + path + "; become a member of the socket's group (see 'ls -l') or root"};
     default: return {ErrorCode::kIo, "cannot connect to " + path + ": " + std::strerror(error)};
   }
 }
@@ -63,8 +62,7 @@ Result<nlohmann::ordered_json> control_request(const std::string& socket_path, c
   socket_path.copy(address.sun_path, socket_path.size());
   const UniqueFd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   if (!fd.is_open()) return {ErrorCode::kIo, std::string("cannot make a socket: ") + std::strerror(errno)};
-  if (::connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0)
-    return connect_error(socket_path, errno);
+  if (::connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) return connect_error(socket_path, errno);
 
   const std::string line = command + "\n";
   const auto deadline = std::chrono::steady_clock::now() + timeout;

@@ -16,9 +16,9 @@
 namespace camloc::tools {
 
 struct FrameCounts {
-  std::uint64_t num_frames = 0;       ///< that were read, broken ones included
-  std::uint64_t num_corrupt = 0;      ///< of them could not be decoded
-  std::string first_corrupt;          ///< what was wrong with the first of those
+  std::uint64_t num_frames = 0;   ///< that were read, broken ones included
+  std::uint64_t num_corrupt = 0;  ///< of them could not be decoded
+  std::string first_corrupt;      ///< what was wrong with the first of those
 
   [[nodiscard]] bool are_all_corrupt() const { return num_frames > 0 && num_corrupt == num_frames; }
 };

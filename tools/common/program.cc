@@ -117,8 +117,7 @@ Status exec_program(const std::string& path, const std::vector<std::string>& arg
   return system_error("cannot run " + path);
 }
 
-Result<ProgramOutput> run_program(const std::string& path, const std::vector<std::string>& arguments,
-                                  std::chrono::milliseconds timeout) {
+Result<ProgramOutput> run_program(const std::string& path, const std::vector<std::string>& arguments, std::chrono::milliseconds timeout) {
   Pipe out;
   Pipe err;
   if (!out.read_end.is_open() || !err.read_end.is_open()) return system_error("cannot make a pipe");

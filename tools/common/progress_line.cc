@@ -14,7 +14,8 @@ constexpr int kBarWidth = 24;
 
 }  // namespace
 
-std::string format_progress(std::uint64_t step, std::uint64_t num_steps, const std::string& unit, const std::string& note, double elapsed_s) {
+std::string format_progress(std::uint64_t step, std::uint64_t num_steps, const std::string& unit, const std::string& note,
+                            double elapsed_s) {
   const std::string spaced_note = note.empty() ? "" : "  " + note;
   if (num_steps == 0) return unit + " " + std::to_string(step) + spaced_note;
   const double done = std::min(1.0, static_cast<double>(step) / static_cast<double>(num_steps));

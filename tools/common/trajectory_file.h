@@ -23,14 +23,14 @@ namespace camloc::tools {
 struct EstimatedPose {
   std::int64_t stamp_ns = 0;
   Rigid3 T_map_camera;
-  std::optional<Matrix6d> covariance;   ///< of pose_error()
+  std::optional<Matrix6d> covariance;  ///< of pose_error()
 };
 
 struct EstimatedTrajectory {
-  std::vector<EstimatedPose> poses;               ///< LOCALIZED frames only
-  std::optional<std::uint64_t> num_frames;        ///< all frames that were tried
-  std::optional<Rigid3> T_color_depth;            ///< set where recorded poses belong to the depth camera
-  std::optional<double> suspect_focal_scale;      ///< true / assumed focal length, where they differ
+  std::vector<EstimatedPose> poses;           ///< LOCALIZED frames only
+  std::optional<std::uint64_t> num_frames;    ///< all frames that were tried
+  std::optional<Rigid3> T_color_depth;        ///< set where recorded poses belong to the depth camera
+  std::optional<double> suspect_focal_scale;  ///< true / assumed focal length, where they differ
 };
 
 [[nodiscard]] std::string format_trajectory(const EstimatedTrajectory& trajectory);

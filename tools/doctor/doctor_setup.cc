@@ -56,8 +56,7 @@ Check check_config(const std::string& path, Settings* settings) {
   if (!camlocd) return {"config", Level::kWarning, "not checked: " + camlocd.status().message(), "install the package camloc"};
   const auto checked = run_program(*camlocd, {"--config", path, "--check-config"}, std::chrono::seconds(10));
   if (!checked) return {"config", Level::kFailure, checked.status().message(), "run 'camlocd --check-config' yourself"};
-  if (checked->exit_code != 0)
-    return {"config", Level::kFailure, first_line(checked->err + checked->out), "correct that line of the file"};
+  if (checked->exit_code != 0) return {"config", Level::kFailure, first_line(checked->err + checked->out), "correct that line of the file"};
   const auto printed = run_program(*camlocd, {"--config", path, "--print-config"}, std::chrono::seconds(10));
   if (printed && printed->exit_code == 0) read_settings(printed->out, settings);
   return {"config", Level::kOk, path, ""};
@@ -65,20 +64,21 @@ Check check_config(const std::string& path, Settings* settings) {
 
 Check check_map(const std::string& path) {
   if (path.empty()) {
-    return {"map", Level::kFailure, "none configured",
-            "build one with 'camloc map build', then set map.path in the configuration"};
+    return {"map", Level::kFailure, "none configured", "build one with 'camloc map build', then set map.path in the configuration"};
   }
   const auto map = MapView::open(path);
   if (!map) return {"map", Level::kFailure, map.status().message(), "build it with 'camloc map build' or copy it again"};
   const MapInfo& info = map->info();
   return {"map", Level::kOk,
-          path + ": " + std::to_string(info.num_landmarks) + " landmarks, " + std::to_string(info.num_keyframes) +
-              " keyframes, " + std::to_string(info.file_bytes / 1000) + " kB",
+          path + ": " + std::to_string(info.num_landmarks) + " landmarks, " + std::to_string(info.num_keyframes) + " keyframes, " +
+              std::to_string(info.file_bytes / 1000) + " kB",
           ""};
 }
 
 Check check_source(const std::string& url, const DaemonAnswer& daemon, std::optional<FrameSize>* size) {
-  if (url.empty()) return {"camera", Level::kFailure, "none configured", "set source.url; 'camloc camera list' shows what is plugged in; this build knows " + known_schemes()};
+  if (url.empty())
+    return {"camera", Level::kFailure, "none configured",
+            "set source.url; 'camloc camera list' shows what is plugged in; this build knows " + known_schemes()};
   if (daemon) {
     const bool has_camera = daemon->value("state", std::string()) != "NO_CAMERA";
     if (has_camera) return {"camera", Level::kOk, url + ": in use by camlocd", ""};
@@ -87,13 +87,15 @@ Check check_source(const std::string& url, const DaemonAnswer& daemon, std::opti
   auto source = open_frame_source(url);
   if (!source) {
     const bool is_unknown = source.status().code() == ErrorCode::kUnsupported;
-    return {"camera", Level::kFailure, source.status().message(), is_unknown ? "this build knows " + known_schemes() : "'camloc camera list' shows what is plugged in"};
+    return {"camera", Level::kFailure, source.status().message(),
+            is_unknown ? "this build knows " + known_schemes() : "'camloc camera list' shows what is plugged in"};
   }
   FrameBuffer frame;
   const Status status = (*source)->next(&frame, std::chrono::seconds(3));
   if (!status) return {"camera", Level::kFailure, url + ": " + status.message(), "check cable, power and permission of the device"};
   *size = FrameSize{frame.gray.width, frame.gray.height};
-  return {"camera", Level::kOk, url + text_of(": %dx%d image, %dx%d depth", frame.gray.width, frame.gray.height, frame.depth.width, frame.depth.height), ""};
+  return {"camera", Level::kOk,
+          url + text_of(": %dx%d image, %dx%d depth", frame.gray.width, frame.gray.height, frame.depth.width, frame.depth.height), ""};
 }
 
 Check check_calibration(const std::string& path, const DaemonAnswer& daemon, const std::optional<FrameSize>& size) {
@@ -103,11 +105,15 @@ Check check_calibration(const std::string& path, const DaemonAnswer& daemon, con
     const auto camera = read_camera_file(path);
     if (!camera) return {"calibration", Level::kFailure, camera.status().message(), "correct that file or set another one"};
     if (size && (camera->color.width != size->width || camera->color.height != size->height)) {
-      return {"calibration", Level::kFailure, path + text_of(": is for %dx%d pixels, the camera gives %dx%d", camera->color.width, camera->color.height, size->width, size->height), mend};
+      return {"calibration", Level::kFailure,
+              path + text_of(": is for %dx%d pixels, the camera gives %dx%d", camera->color.width, camera->color.height, size->width,
+                             size->height),
+              mend};
     }
   }
   if (daemon && daemon->value("is_calibration_suspect", false)) {
-    return {"calibration", Level::kWarning, name + text_of(": the images fit the map with %.3f times its focal length", daemon->value("focal_scale", 1.0)), mend};
+    return {"calibration", Level::kWarning,
+            name + text_of(": the images fit the map with %.3f times its focal length", daemon->value("focal_scale", 1.0)), mend};
   }
   return {"calibration", Level::kOk, name, ""};
 }

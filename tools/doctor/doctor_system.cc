@@ -25,7 +25,8 @@ std::map<std::string, std::string> parse_properties(const std::string& text) {
   std::map<std::string, std::string> properties;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
-    if (const std::size_t equals = line.find('='); equals != std::string::npos) properties[line.substr(0, equals)] = line.substr(equals + 1);
+    if (const std::size_t equals = line.find('='); equals != std::string::npos)
+      properties[line.substr(0, equals)] = line.substr(equals + 1);
   }
   return properties;
 }
@@ -47,10 +48,13 @@ Check check_service(const std::string& text) {
   auto properties = parse_properties(text);
   const std::string active = properties["ActiveState"], sub = properties["SubState"], result = properties["Result"];
   if (active.empty()) return {"service", Level::kWarning, "systemctl does not know camlocd", "is systemd running?"};
-  if (properties["LoadState"] == "not-found") return {"service", Level::kWarning, "camlocd.service is not installed", "sudo apt install ./camloc_*.deb"};
-  if (properties["LoadState"] == "masked") return {"service", Level::kWarning, "camlocd.service is masked", "sudo systemctl unmask camlocd"};
+  if (properties["LoadState"] == "not-found")
+    return {"service", Level::kWarning, "camlocd.service is not installed", "sudo apt install ./camloc_*.deb"};
+  if (properties["LoadState"] == "masked")
+    return {"service", Level::kWarning, "camlocd.service is masked", "sudo systemctl unmask camlocd"};
   if (active == "failed" || sub == "auto-restart") {
-    const std::string why = result == "watchdog" ? "frames made no progress and the watchdog ended it" : "it ended with result '" + result + "'";
+    const std::string why =
+        result == "watchdog" ? "frames made no progress and the watchdog ended it" : "it ended with result '" + result + "'";
     return {"service", Level::kFailure, "camlocd.service: " + why, std::string(kJournal) + "; then sudo systemctl restart camlocd"};
   }
   if (active == "activating") return {"service", Level::kWarning, "camlocd.service is starting", kJournal};
@@ -60,13 +64,15 @@ Check check_service(const std::string& text) {
             is_enabled ? "sudo systemctl start camlocd" : "sudo systemctl enable --now camlocd"};
   }
   const std::string restarts = properties["NRestarts"];
-  if (!restarts.empty() && restarts != "0") return {"service", Level::kWarning, "camlocd.service is active, after " + restarts + " restarts", kJournal};
+  if (!restarts.empty() && restarts != "0")
+    return {"service", Level::kWarning, "camlocd.service is active, after " + restarts + " restarts", kJournal};
   return {"service", Level::kOk, "camlocd.service is active", ""};
 }
 
 Check check_lcm(const std::string& url) {
   const auto route = find_multicast_route(url);
-  if (!route && route.status().code() == ErrorCode::kInvalid) return {"lcm", Level::kFailure, route.status().message(), "set publish.lcm_url"};
+  if (!route && route.status().code() == ErrorCode::kInvalid)
+    return {"lcm", Level::kFailure, route.status().message(), "set publish.lcm_url"};
   if (!route) return {"lcm", Level::kFailure, route.status().message(), "sudo systemctl enable --now camloc-multicast"};
   if (route->group.empty()) return {"lcm", Level::kOk, url + ": no network", ""};
   const bool is_local = route->local_address.rfind("127.", 0) == 0;
@@ -90,10 +96,12 @@ Check check_clock(const ClockState& clock) {
   char text[32] = "?";
   if (::gmtime_r(&seconds, &date) != nullptr) std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S UTC", &date);
   if (clock.epoch_s < kEarliest_s) {
-    return {"clock", Level::kFailure, std::string("says ") + text + ": poses get stamps of the past", "sudo timedatectl set-ntp true, or sudo date -s 'YYYY-MM-DD HH:MM:SS'"};
+    return {"clock", Level::kFailure, std::string("says ") + text + ": poses get stamps of the past",
+            "sudo timedatectl set-ntp true, or sudo date -s 'YYYY-MM-DD HH:MM:SS'"};
   }
   if (clock.is_synchronized) return {"clock", Level::kOk, std::string(text) + ", synchronized", ""};
-  return {"clock", Level::kWarning, std::string(text) + ", not synchronized: stamps cannot be compared with those of other machines", "sudo timedatectl set-ntp true"};
+  return {"clock", Level::kWarning, std::string(text) + ", not synchronized: stamps cannot be compared with those of other machines",
+          "sudo timedatectl set-ntp true"};
 }
 
 Check check_cpu() {

@@ -103,7 +103,8 @@ std::vector<UsbDevice> list_usb_devices(const SystemFolders& folders) {
     if (devices.size() == kMaxDevices) break;
     if (auto device = read_device(entry.path())) devices.push_back(std::move(*device));
   }
-  std::sort(devices.begin(), devices.end(), [](const UsbDevice& a, const UsbDevice& b) { return std::tie(a.bus, a.address) < std::tie(b.bus, b.address); });
+  std::sort(devices.begin(), devices.end(),
+            [](const UsbDevice& a, const UsbDevice& b) { return std::tie(a.bus, a.address) < std::tie(b.bus, b.address); });
   return devices;
 }
 

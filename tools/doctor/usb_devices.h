@@ -18,7 +18,7 @@ struct SystemFolders {
 };
 
 struct UsbDevice {
-  std::string name;                  ///< "1-2.3": bus and ports
+  std::string name;  ///< "1-2.3": bus and ports
   std::uint16_t vendor = 0, product = 0;
   std::string serial, product_name;  ///< empty where it has none
   int bus = 0, address = 0;

@@ -45,7 +45,8 @@ std::optional<EpipolarError> EpipolarMeter::measure(const ViewFeatures& a, const
   for (const Match& match : matcher_.match(b.features, candidates_)) {
     const auto in_a = static_cast<std::size_t>(match.landmark), in_b = static_cast<std::size_t>(match.feature);
     const Eigen::Vector3f p = a.point_camera(in_a).cast<float>();
-    pairs_.add(b.normalized[in_b].x(), b.normalized[in_b].y(), p.x(), p.y(), p.z(), b.depth_m[in_b], 1, match.distance, match.feature, match.landmark);
+    pairs_.add(b.normalized[in_b].x(), b.normalized[in_b].y(), p.x(), p.y(), p.z(), b.depth_m[in_b], 1, match.distance, match.feature,
+               match.landmark);
   }
   if (static_cast<int>(pairs_.size()) < options_.min_inliers) return std::nullopt;
   pairs_.sort_by_rank();

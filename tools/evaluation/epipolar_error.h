@@ -17,13 +17,13 @@
 namespace camloc::tools {
 
 struct EpipolarOptions {
-  int min_inliers = 40;           ///< matches that one rigid motion explains; with fewer, two images say nothing
-  double max_error_px = 3.0;      ///< of the motion that is found from the matches alone
+  int min_inliers = 40;       ///< matches that one rigid motion explains; with fewer, two images say nothing
+  double max_error_px = 3.0;  ///< of the motion that is found from the matches alone
 };
 
 struct EpipolarError {
-  int num_matches = 0;            ///< that one rigid motion explains
-  double median_px = 0;           ///< Sampson distance under the given poses
+  int num_matches = 0;   ///< that one rigid motion explains
+  double median_px = 0;  ///< Sampson distance under the given poses
 };
 
 /// Measures pairs of views. Not thread-safe.

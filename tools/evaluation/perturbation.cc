@@ -73,7 +73,8 @@ Result<Perturbation> parse_perturbation(const std::string& text) {
     if (number.empty() || *end != '\0' || !(value >= entry.min && value <= entry.max)) break;
     return Perturbation{entry.kind, value};
   }
-  return {ErrorCode::kInvalid, "--perturb " + text + ": expected gamma=0.05..20, contrast=0..10, exposure=0..20, noise=0..128 or blur=1..101"};
+  return {ErrorCode::kInvalid,
+          "--perturb " + text + ": expected gamma=0.05..20, contrast=0..10, exposure=0..20, noise=0..128 or blur=1..101"};
 }
 
 void apply(const std::vector<Perturbation>& perturbations, std::uint64_t sequence, Image<std::uint8_t>* gray) {

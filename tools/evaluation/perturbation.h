@@ -16,11 +16,11 @@ namespace camloc::tools {
 /// One change of the grey image. Changes are applied in the order given.
 struct Perturbation {
   enum class Kind : std::uint8_t {
-    kGamma,      ///< 255 (v / 255)^value
-    kContrast,   ///< 128 + value (v - 128)
-    kExposure,   ///< value * v
-    kNoise,      ///< plus normal noise, sigma = value grey levels, seeded by the frame number
-    kBlur,       ///< mean over value pixels along the row: horizontal motion
+    kGamma,     ///< 255 (v / 255)^value
+    kContrast,  ///< 128 + value (v - 128)
+    kExposure,  ///< value * v
+    kNoise,     ///< plus normal noise, sigma = value grey levels, seeded by the frame number
+    kBlur,      ///< mean over value pixels along the row: horizontal motion
   };
   Kind kind = Kind::kGamma;
   double value = 1;

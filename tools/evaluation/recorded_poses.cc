@@ -6,7 +6,8 @@
 
 namespace camloc::tools {
 
-Result<RecordedPoses> read_recorded_poses(const std::string& folder, const std::string& frames, const std::optional<Rigid3>& T_color_depth) {
+Result<RecordedPoses> read_recorded_poses(const std::string& folder, const std::string& frames,
+                                          const std::optional<Rigid3>& T_color_depth) {
   auto sequence = read_sequence(folder);
   if (!sequence) return sequence.status();
   auto selected = select_frames(frames, "", sequence->frames.size());

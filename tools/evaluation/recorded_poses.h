@@ -14,8 +14,8 @@
 namespace camloc::tools {
 
 struct RecordedPoses {
-  std::vector<StampedPose> poses;   ///< T_world_camera of the colour camera, of the selected frames that have one
-  std::uint64_t num_frames = 0;     ///< selected ones, with and without a pose
+  std::vector<StampedPose> poses;  ///< T_world_camera of the colour camera, of the selected frames that have one
+  std::uint64_t num_frames = 0;    ///< selected ones, with and without a pose
 };
 
 /// `frames` is a selection in the notation of --frames, empty for all. `T_color_depth` is set where the recorded poses belong to the

@@ -15,12 +15,14 @@ Status check_sizes(const FrameSourceInfo& info, const RgbdCamera& camera, const 
   if (info.color_width == 0) return Status::ok();  // a live source tells with its first frame
   const auto size = [](int width, int height) { return std::to_string(width) + "x" + std::to_string(height); };
   if (info.color_width != camera.color.width || info.color_height != camera.color.height) {
-    return {ErrorCode::kInvalid, camera_path + ": is for " + size(camera.color.width, camera.color.height) + " colour images, the sequence has " +
-                                     size(info.color_width, info.color_height) + ": use the camera file of the camera that recorded it"};
+    return {ErrorCode::kInvalid, camera_path + ": is for " + size(camera.color.width, camera.color.height) +
+                                     " colour images, the sequence has " + size(info.color_width, info.color_height) +
+                                     ": use the camera file of the camera that recorded it"};
   }
   if (info.depth_width != 0 && (info.depth_width != camera.depth.width || info.depth_height != camera.depth.height)) {
-    return {ErrorCode::kInvalid, camera_path + ": is for " + size(camera.depth.width, camera.depth.height) + " depth images, the sequence has " +
-                                     size(info.depth_width, info.depth_height) + ": use the camera file of the camera that recorded it"};
+    return {ErrorCode::kInvalid, camera_path + ": is for " + size(camera.depth.width, camera.depth.height) +
+                                     " depth images, the sequence has " + size(info.depth_width, info.depth_height) +
+                                     ": use the camera file of the camera that recorded it"};
   }
   return Status::ok();
 }

@@ -22,9 +22,9 @@ struct SequenceRunOptions {
   std::string map_path;
   std::string sequence_url;
   std::string camera_path;
-  std::string frames;                 ///< "start:stop:step[,...]", empty = all
+  std::string frames;  ///< "start:stop:step[,...]", empty = all
   std::string exclude;
-  bool is_single = false;             ///< every frame is a kidnapped robot
+  bool is_single = false;  ///< every frame is a kidnapped robot
   bool use_depth = true;
   std::vector<std::string> perturbations;
 };

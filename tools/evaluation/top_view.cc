@@ -20,7 +20,7 @@ constexpr double kGoodM = 0.05, kFairM = 0.25;
 
 /// Map axes to picture: which axis is up, and where a metre lands.
 struct Projection {
-  int right = 0, up = 1;          ///< map axes drawn to the right and upwards
+  int right = 0, up = 1;  ///< map axes drawn to the right and upwards
   double min_right = 0, min_up = 0, px_per_m = 1;
   int height_px = 0;
 
@@ -48,7 +48,8 @@ std::pair<double, double> range_of(std::vector<double> values) {
   return {values[values.size() / 100], values[values.size() - 1 - values.size() / 100]};
 }
 
-Projection fit(const std::vector<Eigen::Vector3d>& landmarks, const std::vector<Rigid3>& truth, const std::vector<Rigid3>& estimate, int width_px) {
+Projection fit(const std::vector<Eigen::Vector3d>& landmarks, const std::vector<Rigid3>& truth, const std::vector<Rigid3>& estimate,
+               int width_px) {
   std::array<std::pair<double, double>, 3> range;
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
@@ -64,7 +65,8 @@ Projection fit(const std::vector<Eigen::Vector3d>& landmarks, const std::vector<
   }
   const auto extent = [&](int axis) { return range[static_cast<std::size_t>(axis)].second - range[static_cast<std::size_t>(axis)].first; };
   int flat = 0;
-  for (int axis = 1; axis < 3; ++axis) if (extent(axis) < extent(flat)) flat = axis;
+  for (int axis = 1; axis < 3; ++axis)
+    if (extent(axis) < extent(flat)) flat = axis;
   Projection projection;
   projection.right = flat == 0 ? 1 : 0;
   projection.up = flat == 2 ? 1 : 2;
@@ -82,7 +84,8 @@ void draw_text(cv::Mat& canvas, const std::string& text, cv::Point at, const cv:
 
 void draw_scale_bar(cv::Mat& canvas, const Projection& projection) {
   double length_m = 0.1;
-  for (const double step : {0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0}) if (step * projection.px_per_m < canvas.cols * 0.25) length_m = step;
+  for (const double step : {0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0})
+    if (step * projection.px_per_m < canvas.cols * 0.25) length_m = step;
   const cv::Point from(kMargin, canvas.rows - 22);
   const cv::Point to = from + cv::Point(static_cast<int>(length_m * projection.px_per_m), 0);
   cv::line(canvas, from, to, kInk, 2);
@@ -92,8 +95,11 @@ void draw_scale_bar(cv::Mat& canvas, const Projection& projection) {
 }
 
 void draw_legend(cv::Mat& canvas) {
-  const struct { const char* text; cv::Scalar color; } entries[] = {
-      {"landmark", kLandmark}, {"keyframe", kKeyframe}, {"truth", kTruth}, {"estimate < 5 cm", kGood}, {"< 25 cm", kFair}, {"farther", kBad}};
+  const struct {
+    const char* text;
+    cv::Scalar color;
+  } entries[] = {{"landmark", kLandmark},    {"keyframe", kKeyframe}, {"truth", kTruth},
+                 {"estimate < 5 cm", kGood}, {"< 25 cm", kFair},      {"farther", kBad}};
   int x = kMargin;
   for (const auto& entry : entries) {
     cv::circle(canvas, {x, 50}, 5, entry.color, cv::FILLED, cv::LINE_AA);

@@ -14,10 +14,10 @@
 namespace camloc::tools {
 
 struct TopView {
-  const MapView* map = nullptr;              ///< landmarks and keyframes, may be null
-  std::vector<Rigid3> truth;                 ///< T_map_camera, drawn as a line
-  std::vector<Rigid3> estimate;              ///< drawn as dots with a tick along the viewing direction
-  std::vector<double> error_m;               ///< per estimate: colours the dot; empty = unknown
+  const MapView* map = nullptr;  ///< landmarks and keyframes, may be null
+  std::vector<Rigid3> truth;     ///< T_map_camera, drawn as a line
+  std::vector<Rigid3> estimate;  ///< drawn as dots with a tick along the viewing direction
+  std::vector<double> error_m;   ///< per estimate: colours the dot; empty = unknown
   std::string title;
 };
 

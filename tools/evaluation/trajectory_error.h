@@ -25,21 +25,21 @@ struct ErrorLimit {
   const char* name;
   double translation_m, rotation_deg;
 };
-inline constexpr std::array<ErrorLimit, 4> kErrorLimits{{
-    {"2cm_2deg", 0.02, 2}, {"5cm_5deg", 0.05, 5}, {"10cm_10deg", 0.10, 10}, {"35cm_10deg", 0.35, 10}}};
+inline constexpr std::array<ErrorLimit, 4> kErrorLimits{
+    {{"2cm_2deg", 0.02, 2}, {"5cm_5deg", 0.05, 5}, {"10cm_10deg", 0.10, 10}, {"35cm_10deg", 0.35, 10}}};
 /// A pose given as LOCALIZED and farther off than this misleads.
 inline constexpr ErrorLimit kMisleading{"misleading", 0.25, 10};
 
 struct TrajectoryErrors {
-  std::uint64_t num_frames = 0;           ///< all frames that were tried
-  std::uint64_t num_localized = 0;        ///< poses in the estimate
-  std::uint64_t num_compared = 0;         ///< of those with a reference pose
+  std::uint64_t num_frames = 0;     ///< all frames that were tried
+  std::uint64_t num_localized = 0;  ///< poses in the estimate
+  std::uint64_t num_compared = 0;   ///< of those with a reference pose
   ErrorStatistics translation_m, rotation_deg;
   std::array<double, kErrorLimits.size()> share_within{};
   std::uint64_t num_misleading = 0;
   std::uint64_t num_with_covariance = 0;
-  double nees_mean = 0, nees_median = 0;  ///< 6 degrees of freedom: 6 and 5.35 when honest
-  double share_inside_95 = 0;             ///< NEES below 12.59
+  double nees_mean = 0, nees_median = 0;       ///< 6 degrees of freedom: 6 and 5.35 when honest
+  double share_inside_95 = 0;                  ///< NEES below 12.59
   std::optional<Rigid3> T_reference_estimate;  ///< of the alignment, when there was one
 };
 

@@ -19,7 +19,8 @@ constexpr std::size_t kMinLandmarksPerCell = 3;
 std::pair<double, double> extent(const std::vector<Eigen::Vector2d>& landmarks, const std::vector<Eigen::Vector2d>& keyframes, int axis) {
   std::vector<double> values;
   for (const Eigen::Vector2d& p : landmarks) values.push_back(p[axis]);
-  double low = values.empty() ? keyframes.front()[axis] : lower_quantile(values, kTail), high = values.empty() ? low : lower_quantile(values, 1 - kTail);
+  double low = values.empty() ? keyframes.front()[axis] : lower_quantile(values, kTail),
+         high = values.empty() ? low : lower_quantile(values, 1 - kTail);
   for (const Eigen::Vector2d& p : keyframes) {
     low = std::min(low, p[axis]);
     high = std::max(high, p[axis]);
@@ -36,13 +37,15 @@ char arrow(const Eigen::Vector2d& forward) {
 
 }  // namespace
 
-MapSketch::MapSketch(const std::vector<Eigen::Vector2d>& landmarks, const std::vector<Eigen::Vector2d>& keyframes, int max_columns, int max_rows) {
+MapSketch::MapSketch(const std::vector<Eigen::Vector2d>& landmarks, const std::vector<Eigen::Vector2d>& keyframes, int max_columns,
+                     int max_rows) {
   if (keyframes.empty()) return;
   const auto [left, right] = extent(landmarks, keyframes, 0);
   const auto [bottom, top] = extent(landmarks, keyframes, 1);
   low_ = {left, bottom};
   column_m_ = std::max((right - left) / (max_columns - 1), (top - bottom) / (2.0 * (max_rows - 1)));
-  const int num_columns = 1 + static_cast<int>((right - left) / column_m_), num_rows = 1 + static_cast<int>((top - bottom) / (2 * column_m_));
+  const int num_columns = 1 + static_cast<int>((right - left) / column_m_),
+            num_rows = 1 + static_cast<int>((top - bottom) / (2 * column_m_));
   rows_.assign(static_cast<std::size_t>(num_rows), std::string(static_cast<std::size_t>(num_columns), ' '));
   std::vector<std::vector<std::size_t>> counts(rows_.size(), std::vector<std::size_t>(rows_[0].size()));
   for (const Eigen::Vector2d& p : landmarks) {
@@ -71,7 +74,8 @@ MapSketch MapSketch::of(const MapView& map, int max_columns, int max_rows) {
 MapSketch::Cell MapSketch::cell_of(const Eigen::Vector2d& p) const {
   const double columns = (p.x() - low_.x()) / column_m_, rows = (p.y() - low_.y()) / (2 * column_m_);
   const auto last_column = static_cast<double>(rows_[0].size() - 1), last_row = static_cast<double>(rows_.size() - 1);
-  return {static_cast<int>(std::clamp(columns, 0.0, last_column)), static_cast<int>(last_row - std::floor(std::clamp(rows, 0.0, last_row)))};
+  return {static_cast<int>(std::clamp(columns, 0.0, last_column)),
+          static_cast<int>(last_row - std::floor(std::clamp(rows, 0.0, last_row)))};
 }
 
 std::string MapSketch::draw(const std::optional<Rigid3>& T_map_camera) const {
@@ -84,8 +88,8 @@ std::string MapSketch::draw(const std::optional<Rigid3>& T_map_camera) const {
   }
   std::string text;
   for (const std::string& row : rows) text += "  " + row + "\n";
-  append_text(&text, "  %.1f x %.1f m, a column is %.2f m; x to the right, y up; . landmarks, o keyframes, ^>v< camera\n", column_m_ * static_cast<double>(rows_[0].size()),
-              2 * column_m_ * static_cast<double>(rows_.size()), column_m_);
+  append_text(&text, "  %.1f x %.1f m, a column is %.2f m; x to the right, y up; . landmarks, o keyframes, ^>v< camera\n",
+              column_m_ * static_cast<double>(rows_[0].size()), 2 * column_m_ * static_cast<double>(rows_.size()), column_m_);
   return text;
 }
 

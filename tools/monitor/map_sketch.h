@@ -18,7 +18,8 @@ namespace camloc::tools {
 class MapSketch {
  public:
   /// `landmarks` and `keyframes` are horizontal positions in the map, metres. Empty where there are no keyframes.
-  MapSketch(const std::vector<Eigen::Vector2d>& landmarks, const std::vector<Eigen::Vector2d>& keyframes, int max_columns = 72, int max_rows = 18);
+  MapSketch(const std::vector<Eigen::Vector2d>& landmarks, const std::vector<Eigen::Vector2d>& keyframes, int max_columns = 72,
+            int max_rows = 18);
   [[nodiscard]] static MapSketch of(const MapView& map, int max_columns = 72, int max_rows = 18);
 
   /// Lines, each ended by "\n": '.' landmarks, 'o' keyframes, '^' '>' 'v' '<' the camera and where it looks; below them the

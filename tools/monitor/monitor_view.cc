@@ -55,8 +55,8 @@ std::vector<std::string> warnings(const MonitorState& state) {
   if (!state.status) return texts;
   const status_t& status = *state.status;
   if (status.is_calibration_suspect != 0) {
-    texts.push_back(print("calibration suspect: the images fit the map with %.3f times the focal length of the camera file",
-                          status.focal_scale));
+    texts.push_back(
+        print("calibration suspect: the images fit the map with %.3f times the focal length of the camera file", status.focal_scale));
   }
   if (status.frames_corrupt > 0) texts.push_back(print("%lld corrupt frames", static_cast<long long>(status.frames_corrupt)));
   if (status.map_reload_failures > 0) {
@@ -71,8 +71,7 @@ std::vector<std::string> warnings(const MonitorState& state) {
 
 std::string state_name(int state) {
   static constexpr std::array kNames{"NO_CAMERA", "NO_MAP", "LOST", "COARSE", "LOCALIZED", "COASTING"};
-  return state >= 0 && state < static_cast<int>(kNames.size()) ? kNames[static_cast<std::size_t>(state)]
-                                                               : "state " + std::to_string(state);
+  return state >= 0 && state < static_cast<int>(kNames.size()) ? kNames[static_cast<std::size_t>(state)] : "state " + std::to_string(state);
 }
 
 PoseSigma pose_sigma(const pose_t& pose) {
@@ -82,13 +81,12 @@ PoseSigma pose_sigma(const pose_t& pose) {
 }
 
 std::string pose_line(const pose_t& pose) {
-  std::string line = print("%lld.%06lld %-9s", static_cast<long long>(pose.utime / 1000000),
-                           static_cast<long long>(pose.utime % 1000000), state_name(pose.state).c_str());
+  std::string line = print("%lld.%06lld %-9s", static_cast<long long>(pose.utime / 1000000), static_cast<long long>(pose.utime % 1000000),
+                           state_name(pose.state).c_str());
   if (has_pose(pose)) {
     const PoseSigma sigma = pose_sigma(pose);
-    line += print("  %s [%+.3f %+.3f %+.3f] m  sigma %.1f cm %.2f deg  quality %d", printable(pose.parent_frame).c_str(),
-                  pose.pos[0], pose.pos[1], pose.pos[2], 100 * sigma.position_m, kDegreesPerRadian * sigma.rotation_rad,
-                  static_cast<int>(pose.quality));
+    line += print("  %s [%+.3f %+.3f %+.3f] m  sigma %.1f cm %.2f deg  quality %d", printable(pose.parent_frame).c_str(), pose.pos[0],
+                  pose.pos[1], pose.pos[2], 100 * sigma.position_m, kDegreesPerRadian * sigma.rotation_rad, static_cast<int>(pose.quality));
   }
   if (pose.state != pose_t::LOCALIZED) line += "  " + printable(pose.reason_text);
   line += print("  inliers %d/%d", pose.num_inliers, pose.num_matches);
@@ -99,8 +97,8 @@ std::string pose_line(const pose_t& pose) {
 std::string status_line(const status_t& status) {
   std::string line = print("status %s", state_name(status.state).c_str());
   line += "  " + printable(status.state_text) + "  source " + printable(status.source) + "  map " + printable(status.map_path);
-  line += print("  camera %s  %.1f Hz  dropped %lld  %.1f MB", printable(status.camera_state).c_str(), status.frame_rate_hz, static_cast<long long>(status.frames_dropped),
-                static_cast<double>(status.rss_bytes) / 1e6);
+  line += print("  camera %s  %.1f Hz  dropped %lld  %.1f MB", printable(status.camera_state).c_str(), status.frame_rate_hz,
+                static_cast<long long>(status.frames_dropped), static_cast<double>(status.rss_bytes) / 1e6);
   MonitorState only_status;
   only_status.status = status;
   for (const auto& warning : warnings(only_status)) line += "  WARNING: " + warning;
@@ -199,8 +197,8 @@ std::string pose_part(const MonitorState& state) {
   screen += print("quality   %d, %d inliers of %d matches of %d features\n", static_cast<int>(pose.quality), pose.num_inliers,
                   pose.num_matches, pose.num_features);
   screen += print("poses     %lld, %.1f %% localized, %.1f Hz, %d resets\n", state.num_poses,
-                  100.0 * static_cast<double>(state.num_localized) / static_cast<double>(std::max(1LL, state.num_poses)),
-                  state.rate_hz, pose.reset_counter);
+                  100.0 * static_cast<double>(state.num_localized) / static_cast<double>(std::max(1LL, state.num_poses)), state.rate_hz,
+                  pose.reset_counter);
   return screen;
 }
 
@@ -236,7 +234,8 @@ std::string monitor_screen(const MonitorState& state) {
   if (state.status) {
     const status_t& status = *state.status;
     screen += camera_part(status);
-    screen += "map       " + printable(status.map_path) + print(", id %s, %lld reloads\n", map_id_text(status.map_id).c_str(), static_cast<long long>(status.map_reloads));
+    screen += "map       " + printable(status.map_path) +
+              print(", id %s, %lld reloads\n", map_id_text(status.map_id).c_str(), static_cast<long long>(status.map_reloads));
     screen += print("daemon    up %.0f s, capture to pose p50 %.1f max %.1f ms, %.1f MB\n", static_cast<double>(status.uptime_us) / 1e6,
                     status.latency_p50_ms, status.latency_max_ms, static_cast<double>(status.rss_bytes) / 1e6);
   }

@@ -17,7 +17,8 @@ FrameWriters::FrameWriters(RecordingFolder* folder, int queue_frames, int num_wr
 
 FrameWriters::~FrameWriters() { finish(); }
 
-bool FrameWriters::push(FrameBuffer* frame, std::int64_t stamp_ns, const std::optional<Eigen::Vector3d>& acceleration, std::chrono::milliseconds patience) {
+bool FrameWriters::push(FrameBuffer* frame, std::int64_t stamp_ns, const std::optional<Eigen::Vector3d>& acceleration,
+                        std::chrono::milliseconds patience) {
   std::unique_lock lock(mutex_);
   if (!has_room_.wait_for(lock, patience, [this] { return !free_.empty(); })) return false;
   const std::size_t index = free_.back();
@@ -65,7 +66,8 @@ void FrameWriters::run() {
 /// Names what is whole and whose turn it is. The lines are short: the lock is held for microseconds.
 void FrameWriters::commit(std::uint64_t ticket, const Written& done) {
   written_.emplace(ticket, done);
-  for (auto first = written_.begin(); first != written_.end() && first->first == next_commit_ && totals_.failure; first = written_.begin()) {
+  for (auto first = written_.begin(); first != written_.end() && first->first == next_commit_ && totals_.failure;
+       first = written_.begin()) {
     const Written& written = first->second;
     Status status = folder_->append_frame(written.stamp_ns, written.has_depth);
     if (status && written.acceleration) status = folder_->append_acceleration(written.stamp_ns, *written.acceleration);

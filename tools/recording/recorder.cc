@@ -24,7 +24,8 @@ std::int64_t read_clock_ns(clockid_t clock) {
 /// One recording while it runs.
 class Recorder {
  public:
-  Recorder(FrameSource* source, RecordingFolder* folder, const RecordingFormat& format, const RecorderOptions& options, const RecorderHooks& hooks)
+  Recorder(FrameSource* source, RecordingFolder* folder, const RecordingFormat& format, const RecorderOptions& options,
+           const RecorderHooks& hooks)
       : source_(*source),
         folder_(*folder),
         format_(format),
@@ -105,10 +106,12 @@ class Recorder {
     const std::optional<RgbdCamera>& camera = options_.camera ? options_.camera : source_.info().camera;
     if (!camera) return Status::ok();
     const Intrinsics& k = camera->color;
-    const int width = format_.is_color ? frame_.color.width : frame_.gray.width, height = format_.is_color ? frame_.color.height : frame_.gray.height;
+    const int width = format_.is_color ? frame_.color.width : frame_.gray.width,
+              height = format_.is_color ? frame_.color.height : frame_.gray.height;
     if (k.width != width || k.height != height) {
       return {ErrorCode::kInvalid, "camera '" + camera->name + "' is of " + std::to_string(k.width) + "x" + std::to_string(k.height) +
-                                       " pixels, the images have " + std::to_string(width) + "x" + std::to_string(height) + "; give the right --camera"};
+                                       " pixels, the images have " + std::to_string(width) + "x" + std::to_string(height) +
+                                       "; give the right --camera"};
     }
     summary_.has_camera = true;
     return folder_.write_camera(*camera);
@@ -128,7 +131,8 @@ class Recorder {
     if (!totals.failure) summary_.end = totals.failure;
     const Result<std::uint64_t> free_bytes = hooks_.free_bytes(folder_);
     if (free_bytes && *free_bytes < options_.min_free_bytes && summary_.end) {
-      summary_.end = {ErrorCode::kIo, folder_.path() + ": only " + std::to_string(*free_bytes >> 20) + " MiB left on the disk, stopped; free some, or lower --min-free"};
+      summary_.end = {ErrorCode::kIo, folder_.path() + ": only " + std::to_string(*free_bytes >> 20) +
+                                          " MiB left on the disk, stopped; free some, or lower --min-free"};
     }
     hooks_.on_progress({totals.frames, totals.bytes, summary_.dropped, totals.queued, free_bytes ? *free_bytes : 0});
   }
@@ -168,7 +172,8 @@ class Recorder {
 std::int64_t monotonic_to_epoch_ns() {
   std::int64_t best_width_ns = std::numeric_limits<std::int64_t>::max(), offset_ns = 0;
   for (int i = 0; i < 10; ++i) {
-    const std::int64_t before_ns = read_clock_ns(CLOCK_MONOTONIC), epoch_ns = read_clock_ns(CLOCK_REALTIME), after_ns = read_clock_ns(CLOCK_MONOTONIC);
+    const std::int64_t before_ns = read_clock_ns(CLOCK_MONOTONIC), epoch_ns = read_clock_ns(CLOCK_REALTIME),
+                       after_ns = read_clock_ns(CLOCK_MONOTONIC);
     if (after_ns - before_ns >= best_width_ns) continue;
     best_width_ns = after_ns - before_ns;
     offset_ns = epoch_ns - (before_ns + best_width_ns / 2);

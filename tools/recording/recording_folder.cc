@@ -87,7 +87,8 @@ Result<RecordingFolder> RecordingFolder::create(const std::string& path, const R
   if (path.empty()) return Status(ErrorCode::kInvalid, "--out: is empty; give a folder");
   if (fs::exists(path, error) && !fs::is_directory(path, error)) return Status(ErrorCode::kInvalid, "--out " + path + ": is no folder");
   if (fs::is_directory(path, error) && !fs::is_empty(path, error)) {
-    if (!replaces_old) return Status(ErrorCode::kInvalid, "--out " + path + ": is not empty; choose another folder, or replace its recording with --force");
+    if (!replaces_old)
+      return Status(ErrorCode::kInvalid, "--out " + path + ": is not empty; choose another folder, or replace its recording with --force");
     if (Status removed = remove_old(path); !removed) return removed;
   }
   for (const char* part : {"/rgb", "/depth"}) {
@@ -95,8 +96,10 @@ Result<RecordingFolder> RecordingFolder::create(const std::string& path, const R
     if (error) return Status(ErrorCode::kIo, path + part + ": " + error.message());
   }
   RecordingFolder folder(path, format);
-  if (Status status = folder.open_index("rgb.txt", "# colour or grey images\n# timestamp filename\n", &folder.color_index_); !status) return status;
-  if (Status status = folder.open_index("depth.txt", "# depth images, raw units; camera.toml says how long one is\n# timestamp filename\n", &folder.depth_index_);
+  if (Status status = folder.open_index("rgb.txt", "# colour or grey images\n# timestamp filename\n", &folder.color_index_); !status)
+    return status;
+  if (Status status = folder.open_index("depth.txt", "# depth images, raw units; camera.toml says how long one is\n# timestamp filename\n",
+                                        &folder.depth_index_);
       !status) {
     return status;
   }
@@ -115,18 +118,22 @@ Status RecordingFolder::append_line(const char* name, const UniqueFd& index, con
   if (count == static_cast<ssize_t>(line.size())) return Status::ok();
   const Status error = count < 0 ? io_error(path_ + "/" + name) : Status(ErrorCode::kIo, path_ + "/" + name + ": " + std::strerror(ENOSPC));
   struct stat size {};
-  if (count > 0 && ::fstat(index.get(), &size) == 0 && ::ftruncate(index.get(), size.st_size - count) != 0) return io_error(path_ + "/" + name);
+  if (count > 0 && ::fstat(index.get(), &size) == 0 && ::ftruncate(index.get(), size.st_size - count) != 0)
+    return io_error(path_ + "/" + name);
   return error;
 }
 
-std::string RecordingFolder::color_name(std::int64_t stamp_ns) const { return "rgb/" + stamp_text(stamp_ns) + (format_.is_jpeg ? ".jpg" : ".png"); }
+std::string RecordingFolder::color_name(std::int64_t stamp_ns) const {
+  return "rgb/" + stamp_text(stamp_ns) + (format_.is_jpeg ? ".jpg" : ".png");
+}
 
 Result<std::uint64_t> RecordingFolder::write_images(const FrameBuffer& frame, std::int64_t stamp_ns) const {
   const std::string color_path = path_ + "/" + color_name(stamp_ns);
   const std::string depth_path = path_ + "/depth/" + stamp_text(stamp_ns) + ".png";
   const std::vector<std::uint8_t> rgb = format_.is_color ? rgb_bytes(frame.color) : std::vector<std::uint8_t>();
   const std::uint8_t* pixels = format_.is_color ? rgb.data() : frame.gray.pixels.data();
-  const int width = format_.is_color ? frame.color.width : frame.gray.width, height = format_.is_color ? frame.color.height : frame.gray.height;
+  const int width = format_.is_color ? frame.color.width : frame.gray.width,
+            height = format_.is_color ? frame.color.height : frame.gray.height;
   const int channels = format_.is_color ? 3 : 1;
   Status status = format_.is_jpeg ? write_jpeg(color_path, pixels, width, height, channels, format_.jpeg_quality)
                                   : write_png(color_path, pixels, width, height, channels, format_.compression);
@@ -155,7 +162,9 @@ Status RecordingFolder::append_acceleration(std::int64_t stamp_ns, const Eigen::
   return append_line("accelerometer.txt", accelerometer_, stamp_text(stamp_ns) + text_of(" %.6f %.6f %.6f\n", a.x(), a.y(), a.z()));
 }
 
-Status RecordingFolder::write_camera(const RgbdCamera& camera) const { return write_text_file(path_ + "/camera.toml", format_camera_toml(camera)); }
+Status RecordingFolder::write_camera(const RgbdCamera& camera) const {
+  return write_text_file(path_ + "/camera.toml", format_camera_toml(camera));
+}
 
 Status RecordingFolder::sync() const {
   for (const UniqueFd* index : {&depth_index_, &accelerometer_, &color_index_}) {

@@ -18,9 +18,9 @@
 namespace camloc::tools {
 
 struct RecordingFormat {
-  bool is_color = false;                                 ///< write FrameBuffer::color instead of the grey image
-  bool is_jpeg = false;                                  ///< else PNG, which keeps every bit; depth is always PNG
-  int jpeg_quality = 95;                                 ///< 1 to 100
+  bool is_color = false;  ///< write FrameBuffer::color instead of the grey image
+  bool is_jpeg = false;   ///< else PNG, which keeps every bit; depth is always PNG
+  int jpeg_quality = 95;  ///< 1 to 100
   PngCompression compression = PngCompression::kFast;
 };
 

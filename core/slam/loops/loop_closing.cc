@@ -11,8 +11,8 @@ namespace camloc {
 namespace {
 
 constexpr std::size_t kMaxPending = 8;
-constexpr std::uint32_t kMaxPendingGap = 6;      // keyframes between two opinions on one loop
-constexpr std::uint32_t kMinLinkShared = 60;     // landmarks that make two keyframes linked in the pose graph
+constexpr std::uint32_t kMaxPendingGap = 6;   // keyframes between two opinions on one loop
+constexpr std::uint32_t kMinLinkShared = 60;  // landmarks that make two keyframes linked in the pose graph
 constexpr float kFuseRadiusPx = 8;
 
 }  // namespace
@@ -67,8 +67,8 @@ bool LoopCloser::is_confirmed(double strain) const {
   if (map_->keyframe(last.place).segment == map_->keyframe(last.keyframe).segment)
     return count >= (strain > 1 ? options_.num_confirmations : 1);
   if (reckoning_.begin_between(last.place, last.keyframe) != nullptr) return count >= options_.num_confirmations_within_reach;
-  const double walked = (map_->keyframe(first.keyframe).view.T_map_camera.translation -
-                         map_->keyframe(last.keyframe).view.T_map_camera.translation).norm();
+  const double walked =
+      (map_->keyframe(first.keyframe).view.T_map_camera.translation - map_->keyframe(last.keyframe).view.T_map_camera.translation).norm();
   return count >= options_.num_confirmations_out_of_reach && walked >= options_.min_joined_path_m;
 }
 
@@ -92,7 +92,7 @@ PoseGraph LoopCloser::segment_graph(std::uint32_t segment) const {
   for (std::uint32_t k = 1; k < map_->keyframes().size(); ++k) {
     if (map_->keyframe(k).segment != segment) continue;
     bool has_link = false;
-    for (const CovisibleKeyframe& c : map_->covisible(k, 1)) {   // most shared first
+    for (const CovisibleKeyframe& c : map_->covisible(k, 1)) {  // most shared first
       if (c.keyframe > k || (has_link && c.num_shared < kMinLinkShared)) continue;
       has_link = true;
       const Rigid3 T_i_j = graph.T_map_pose[c.keyframe].inverse() * graph.T_map_pose[k];
@@ -142,8 +142,10 @@ void LoopCloser::fuse(const std::vector<LoopMatch>& matches) {
       const std::int32_t into = map_->resolve(pair.landmark);
       const std::int32_t present = map_->keyframe(match.keyframe).landmark_of_feature[pair.feature];
       if (into == kNoLandmark || present == into) continue;
-      if (present != kNoLandmark) map_->merge(static_cast<std::uint32_t>(present), static_cast<std::uint32_t>(into));
-      else map_->add_sighting(static_cast<std::uint32_t>(into), {match.keyframe, pair.feature});
+      if (present != kNoLandmark)
+        map_->merge(static_cast<std::uint32_t>(present), static_cast<std::uint32_t>(into));
+      else
+        map_->add_sighting(static_cast<std::uint32_t>(into), {match.keyframe, pair.feature});
     }
   }
   fuse_surroundings(matches.back());

@@ -21,9 +21,9 @@
 namespace camloc {
 
 struct LoopReport {
-  bool is_found = false;                       ///< a possible place was seen again
-  bool is_closed = false, is_joined = false;   ///< a loop in its segment; two segments became one
-  bool is_refused = false;                     ///< confirmed, but the pose graph would have to stretch too far
+  bool is_found = false;                      ///< a possible place was seen again
+  bool is_closed = false, is_joined = false;  ///< a loop in its segment; two segments became one
+  bool is_refused = false;                    ///< confirmed, but the pose graph would have to stretch too far
   std::uint32_t place = 0;
   int num_inliers = 0;
   Rigid3 T_place_keyframe;
@@ -58,8 +58,8 @@ class LoopCloser {
   LoopDetector detector_;
   LandmarkSet place_landmarks_;
   std::vector<LoopMatch> pending_;
-  std::vector<PoseGraphEdge> edges_;   ///< of all loops closed so far
-  std::vector<PoseGraphEdge> links_;   ///< see add_link()
+  std::vector<PoseGraphEdge> edges_;  ///< of all loops closed so far
+  std::vector<PoseGraphEdge> links_;  ///< see add_link()
 };
 
 }  // namespace camloc

@@ -22,9 +22,8 @@ std::optional<LoopMatch> LoopDetector::find(std::uint32_t keyframe, const PlaceI
     if (num_tried++ == options_.num_candidates) break;
     try_place(keyframe, ranked.keyframe, false, &candidates);
   }
-  const auto best = std::max_element(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    return a.found.num_inliers() < b.found.num_inliers();
-  });
+  const auto best = std::max_element(candidates.begin(), candidates.end(),
+                                     [](const Candidate& a, const Candidate& b) { return a.found.num_inliers() < b.found.num_inliers(); });
   if (best == candidates.end() || !is_convincing(best->found, options_.place) || has_rival(*best, candidates)) return std::nullopt;
   const Rigid3 T_map_place = map_->keyframe(best->place).view.T_map_camera;
   LoopMatch match;
@@ -71,8 +70,9 @@ void LoopDetector::try_place(std::uint32_t keyframe, std::uint32_t place, bool i
   const auto keyframes = map_->surroundings(place, kMinSurroundingShared, options_.keyframes_per_place);
   place_landmarks_.assign(*map_, keyframes, options_.max_place_landmarks);
   const SlamKeyframe& query = map_->keyframe(keyframe);
-  Registration found = is_nearby ? registration_->guided(query.view, &place_landmarks_, query.view.T_map_camera, options_.nearby_radius_px, query.frame)
-                                 : registration_->unguided(query.view, &place_landmarks_, query.frame);
+  Registration found =
+      is_nearby ? registration_->guided(query.view, &place_landmarks_, query.view.T_map_camera, options_.nearby_radius_px, query.frame)
+                : registration_->unguided(query.view, &place_landmarks_, query.frame);
   if (!found.is_found) return;
   const double strain = reckoning_->strain(keyframe, place, found.T_map_camera);
   if (strain <= DeadReckoning::kMaxStrain) candidates->push_back({place, strain, std::move(found)});

@@ -26,9 +26,9 @@ namespace camloc {
 struct LoopMatch {
   std::uint32_t keyframe = 0, place = 0;
   Rigid3 T_place_keyframe;
-  Matrix6d covariance = Matrix6d::Identity();   ///< of pose_error(), axes of `place`
-  double strain = 0;      ///< of the correction, see DeadReckoning
-  Rigid3 T_correction;    ///< moves the map of now onto the map of then
+  Matrix6d covariance = Matrix6d::Identity();  ///< of pose_error(), axes of `place`
+  double strain = 0;                           ///< of the correction, see DeadReckoning
+  Rigid3 T_correction;                         ///< moves the map of now onto the map of then
   Registration registration;
 };
 

@@ -17,7 +17,7 @@ namespace camloc {
 
 struct RankedPlace {
   std::uint32_t keyframe = 0;
-  float score = 0;   ///< cosine of the two tf-idf vectors
+  float score = 0;  ///< cosine of the two tf-idf vectors
 };
 
 /// Not thread-safe. The same keyframes in the same order give the same bits.
@@ -37,9 +37,9 @@ class PlaceIndex {
   void enter(std::uint32_t keyframe);
   [[nodiscard]] std::vector<float> word_counts(std::span<const Descriptor> descriptors) const;
 
-  std::vector<std::vector<Descriptor>> descriptors_;   ///< a sample of each keyframe's
+  std::vector<std::vector<Descriptor>> descriptors_;  ///< a sample of each keyframe's
   std::vector<Descriptor> words_;
-  std::vector<std::vector<Entry>> entries_;            ///< per word
+  std::vector<std::vector<Entry>> entries_;  ///< per word
   std::size_t next_training_ = 8;
 };
 

@@ -33,11 +33,13 @@ void append_slam(const BuildSummary& s, std::string* text) {
   const SlamSummary& slam = *s.slam;
   const SlamCounts& c = slam.counts;
   append_text(text, "%-22s%u of %u, lost %u times\n", "frames tracked", c.num_views - c.num_lost, c.num_views, c.num_losses);
-  if (c.num_bridged > 0) append_text(text, "%-22s%u, too bare for features: followed by all their pixels\n", "frames bridged", c.num_bridged);
-  append_text(text, "%-22s%u, of %u views each on average\n", "SLAM keyframes", c.num_keyframes, c.num_views / std::max(c.num_keyframes, 1U));
+  if (c.num_bridged > 0)
+    append_text(text, "%-22s%u, too bare for features: followed by all their pixels\n", "frames bridged", c.num_bridged);
+  append_text(text, "%-22s%u, of %u views each on average\n", "SLAM keyframes", c.num_keyframes,
+              c.num_views / std::max(c.num_keyframes, 1U));
   append_text(text, "%-22s%u closed, %u refused\n", "loops", c.num_loops, c.num_loops_refused);
-  append_text(text, "%-22smedian %.2f px, 90 %% below %.2f px (%llu sightings)\n", "reprojection error", slam.fit.median_px, slam.fit.p90_px,
-         count(slam.fit.num_sightings));
+  append_text(text, "%-22smedian %.2f px, 90 %% below %.2f px (%llu sightings)\n", "reprojection error", slam.fit.median_px,
+              slam.fit.p90_px, count(slam.fit.num_sightings));
   append_text(text, "%-22smedian %.1f mm\n", "depth error", 1000 * slam.fit.median_depth_m);
   append_text(text, "%-22s%s\n", "vertical", vertical_text(s).c_str());
 }
@@ -45,10 +47,10 @@ void append_slam(const BuildSummary& s, std::string* text) {
 void append_submaps(const BuildSummary& s, std::string* text) {
   if (s.submaps.empty()) return;
   append_text(text, "%zu further segment%s could not be joined to the map: no place in common was seen with certainty\n", s.submaps.size(),
-         s.submaps.size() == 1 ? "" : "s");
+              s.submaps.size() == 1 ? "" : "s");
   for (const SubmapSummary& submap : s.submaps) {
     append_text(text, "  %-20s%u views, %u keyframes\n", submap.map_path.empty() ? "(too short, left out)" : submap.map_path.c_str(),
-           submap.num_views, submap.num_keyframes);
+                submap.num_views, submap.num_keyframes);
   }
 }
 
@@ -81,8 +83,11 @@ nlohmann::ordered_json slam_json(const SlamSummary& slam) {
   json["depth_error_m"] = {{"median", slam.fit.median_depth_m}};
   json["stamp_jumps"] = slam.num_stamp_jumps;
   json["resumed_views"] = slam.num_resumed;
-  if (slam.up) json["up"] = {{"source", slam.up->source == GravitySource::kFloor ? "floor" : "accelerometer"}, {"sigma_deg", degrees(slam.up->sigma_rad)}};
-  else json["up"] = nullptr;
+  if (slam.up)
+    json["up"] = {{"source", slam.up->source == GravitySource::kFloor ? "floor" : "accelerometer"},
+                  {"sigma_deg", degrees(slam.up->sigma_rad)}};
+  else
+    json["up"] = nullptr;
   json["weak_spots"] = nlohmann::ordered_json::array();
   for (const WeakSpot& w : slam.weak_spots)
     json["weak_spots"].push_back({{"first_frame", w.first_frame}, {"last_frame", w.last_frame}, {"what", w.what}, {"advice", w.advice}});
@@ -96,9 +101,9 @@ std::string format_table(const BuildSummary& s) {
   std::string text;
   append_text(&text, "%-22s%s\n", "map", s.map_path.c_str());
   append_text(&text, "%-22s%u of %llu recorded, %llu selected\n", "frames used", b.num_frames, count(s.num_recorded),
-         count(s.num_selected));
+              count(s.num_selected));
   append_text(&text, "%-22s%llu without pose, %llu without depth, %llu broken\n", "frames skipped", count(s.num_without_pose),
-         count(s.num_without_depth), count(s.reading.num_corrupt));
+              count(s.num_without_depth), count(s.reading.num_corrupt));
   if (s.slam) append_slam(s, &text);
   if (s.model_scale) append_text(&text, "%-22s%s\n", "scale of the model", describe_scale(*s.model_scale).c_str());
   append_text(&text, "%-22s%llu\n", "observations", count(b.num_observations));
@@ -113,7 +118,7 @@ std::string format_table(const BuildSummary& s) {
   }
   if (b.num_consistency_pairs > 0) {
     append_text(&text, "%-22s%.1f cm, %.2f deg per axis between views (%u pairs)\n", "pose inconsistency", 100 * s.consistency_sigma_m,
-           degrees(s.consistency_sigma_rad), b.num_consistency_pairs);
+                degrees(s.consistency_sigma_rad), b.num_consistency_pairs);
   } else {
     append_text(&text, "%-22sunknown: no two views see the same place at different times\n", "pose inconsistency");
   }
@@ -137,8 +142,10 @@ std::string format_json(const BuildSummary& s) {
   json["is_partial"] = s.is_partial;
   if (s.slam) json["slam"] = slam_json(*s.slam);
   if (s.model_scale) {
-    json["model_scale"] = {{"metres_per_unit", s.model_scale->metres_per_unit}, {"spread", s.model_scale->spread},
-                           {"image_spread", s.model_scale->image_spread},       {"pairs", s.model_scale->num_pairs},
+    json["model_scale"] = {{"metres_per_unit", s.model_scale->metres_per_unit},
+                           {"spread", s.model_scale->spread},
+                           {"image_spread", s.model_scale->image_spread},
+                           {"pairs", s.model_scale->num_pairs},
                            {"images", s.model_scale->num_images}};
   }
   if (s.survey) json["survey"] = nlohmann::ordered_json::parse(format_json(*s.survey));

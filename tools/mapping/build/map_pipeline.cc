@@ -22,16 +22,14 @@ namespace {
 using tools::InterruptGuard;
 using tools::ProgressLine;
 
-constexpr std::uint32_t kMinSegmentKeyframes = 4;   // a shorter stretch is no sub-map
+constexpr std::uint32_t kMinSegmentKeyframes = 4;  // a shorter stretch is no sub-map
 
 Status interrupted_status(const std::string& map_path) {
   const bool is_there = std::filesystem::exists(map_path);
   return {ErrorCode::kIo, "interrupted; " + map_path + (is_there ? " is unchanged" : " was not written")};
 }
 
-std::string folder_name(const std::string& folder) {
-  return std::filesystem::weakly_canonical(folder).filename().string().substr(0, 63);
-}
+std::string folder_name(const std::string& folder) { return std::filesystem::weakly_canonical(folder).filename().string().substr(0, 63); }
 
 /// out.cmap, out.2.cmap, out.3.cmap, ...
 std::string segment_path(const std::string& map_path, std::size_t number) {
@@ -107,8 +105,8 @@ Status build_from_poses(const BuildRequest& request, BuildSummary* summary) {
   if (InterruptGuard::is_interrupted()) return interrupted_status(request.map_path);
   if (summary->reading.are_all_corrupt()) return tools::all_frames_corrupt(summary->reading);
   progress.say("choosing landmarks and keyframes, training words ...");
-  return finish_map(request, request.name.empty() ? folder_name(frames->folder) : request.name, request.map_path, std::nullopt, {}, &builder,
-                    summary);
+  return finish_map(request, request.name.empty() ? folder_name(frames->folder) : request.name, request.map_path, std::nullopt, {},
+                    &builder, summary);
 }
 
 // --- SLAM finds the poses --------------------------------------------------------------------------------------------
@@ -119,8 +117,8 @@ struct Walk {
   WalkRequest pass;
   std::optional<Survey> survey;
   WalkEnd end;
-  SlamResult result;                ///< where the camera was
-  std::optional<WcsDatum> datum;    ///< where the largest segment lies in the site
+  SlamResult result;              ///< where the camera was
+  std::optional<WcsDatum> datum;  ///< where the largest segment lies in the site
 };
 
 Result<Walk> prepare_walk(const BuildRequest& request) {
@@ -136,7 +134,7 @@ Result<Walk> prepare_walk(const BuildRequest& request) {
     walk.survey = std::move(survey).value();
     slam.required_keyframes = frames_of(*walk.survey);
   }
-  walk.pass = {walk.frames.url, walk.frames.num_selected, request.camera, request.map.orb, slam, view_log_path(request.map_path),
+  walk.pass = {walk.frames.url,   walk.frames.num_selected, request.camera, request.map.orb, slam, view_log_path(request.map_path),
                request.is_resumed};
   return walk;
 }
@@ -148,8 +146,7 @@ Status find_poses(const BuildRequest& request, Slam* slam, Walk* walk, BuildSumm
   if (!end.is_ok()) return end.status();
   walk->end = std::move(end).value();
   // A map that is extended is not touched by half a walk.
-  if (walk->end.is_interrupted && !request.extend_path.empty())
-    return interrupted_status(request.map_path);
+  if (walk->end.is_interrupted && !request.extend_path.empty()) return interrupted_status(request.map_path);
   summary->is_partial = walk->end.is_interrupted;
   summary->reading = walk->end.reading;
   summary->num_without_depth = walk->end.num_without_depth;
@@ -163,12 +160,13 @@ Status find_poses(const BuildRequest& request, Slam* slam, Walk* walk, BuildSumm
   if (usable.is_ok() && walk->result.segments.empty())
     usable = {ErrorCode::kInvalid, request.frames.sequence + ": no frame shows enough texture with depth to begin a map"};
   if (!usable.is_ok()) {
-    if (walk->end.is_interrupted) return interrupted_status(request.map_path);   // too early to tell, --resume will
+    if (walk->end.is_interrupted) return interrupted_status(request.map_path);  // too early to tell, --resume will
     std::filesystem::remove(walk->pass.log_path);
     return usable;
   }
-  summary->slam = SlamSummary{slam->counts(), walk->result.segments.front().fit, check.weak_spots(), check.num_stamp_jumps(),
-                              walk->end.num_resumed, "", std::nullopt};
+  summary->slam =
+      SlamSummary{slam->counts(), walk->result.segments.front().fit, check.weak_spots(), check.num_stamp_jumps(), walk->end.num_resumed, "",
+                  std::nullopt};
   return Status::ok();
 }
 
@@ -263,7 +261,7 @@ Status build_from_walk(const BuildRequest& request, BuildSummary* summary) {
   summary->num_recorded = walk.frames.num_recorded;
   summary->num_selected = walk.frames.num_selected;
   {
-    Slam slam(request.camera, walk.pass.slam);   // gone before the map takes its place in memory
+    Slam slam(request.camera, walk.pass.slam);  // gone before the map takes its place in memory
     if (const Status found = find_poses(request, &slam, &walk, summary); !found.is_ok()) return found;
     if (const Status placed = place_walk(request, &slam, &walk, summary); !placed.is_ok()) return placed;
     measure_bend(slam, &walk.result);

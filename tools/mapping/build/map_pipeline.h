@@ -18,18 +18,18 @@
 namespace camloc::map_tool {
 
 struct BuildRequest {
-  PosedFramesRequest frames;      ///< `poses` empty: SLAM finds them
+  PosedFramesRequest frames;  ///< `poses` empty: SLAM finds them
   RgbdCamera camera;
   MapBuildOptions map;
   SlamOptions slam;
   std::string map_path;
-  std::string extend_path;        ///< map that the recording is merged into, see merge_pipeline.h; empty: a map of its own
-  std::string name;               ///< of the map; empty: the folder's
-  std::string trajectory_path;    ///< where the camera was, TUM format; empty: not written
+  std::string extend_path;      ///< map that the recording is merged into, see merge_pipeline.h; empty: a map of its own
+  std::string name;             ///< of the map; empty: the folder's
+  std::string trajectory_path;  ///< where the camera was, TUM format; empty: not written
   bool is_resumed = false;
-  bool is_levelled = true;        ///< turn the map so that z is up where floor or accelerometer show which way that is
-  std::string accelerometer_path; ///< empty: accelerometer.txt of the recording, if there is one and no floor
-  SurveyRequest survey;           ///< control points
+  bool is_levelled = true;         ///< turn the map so that z is up where floor or accelerometer show which way that is
+  std::string accelerometer_path;  ///< empty: accelerometer.txt of the recording, if there is one and no floor
+  SurveyRequest survey;            ///< control points
 };
 
 /// Makes the map and says what came of it. Errors: kInvalid for what the user can change in the request or the recording. An

@@ -46,9 +46,7 @@ Status merge_into(const std::string& map_a, const MapData& b, const MapMergeOpti
   if (!a.is_ok()) return a.status();
   summary->map_a = map_a;
   MergeProgressLine line;
-  const auto progress = [&line](const std::string& what, std::uint64_t done, std::uint64_t total) {
-    return line.show(what, done, total);
-  };
+  const auto progress = [&line](const std::string& what, std::uint64_t done, std::uint64_t total) { return line.show(what, done, total); };
   const auto merged = merge_maps(a.value(), b, options, progress, &summary->report);
   if (!merged.is_ok()) return merged.status();
   if (a.value().is_damaged()) return {ErrorCode::kCorrupt, map_a + ": could not be read to its end; was it changed meanwhile?"};
@@ -66,18 +64,18 @@ std::string format_table(const MergeSummary& s) {
   append_text(&text, "%-22s%s: %u landmarks, %u keyframes\n", "first map", s.map_a.c_str(), r.num_landmarks_a, r.num_keyframes_a);
   append_text(&text, "%-22s%s: %u landmarks, %u keyframes\n", "second map", s.map_b.c_str(), r.num_landmarks_b, r.num_keyframes_b);
   append_text(&text, "%-22s%u of %u keyframes of the second map; %u of %u asked by look alone, %u refused\n", "found in the first",
-         r.num_localized, r.num_keyframes_b, r.registration.num_convincing, r.registration.num_queries,
-         r.registration.num_disagreeing);
+              r.num_localized, r.num_keyframes_b, r.registration.num_convincing, r.registration.num_queries,
+              r.registration.num_disagreeing);
   append_text(&text, "%-22s%.1f cm, %.2f deg median of those; the second map was bent by up to %.1f cm\n", "disagreement",
-         100 * r.alignment.residual_m, degrees(r.alignment.residual_rad), 100 * r.alignment.bend_m);
+              100 * r.alignment.residual_m, degrees(r.alignment.residual_rad), 100 * r.alignment.bend_m);
   append_text(&text, "%-22s%u fused, %u added, %u further appearances\n", "landmarks of second", r.num_fused, r.num_added,
-         r.num_appearances);
+              r.num_appearances);
   append_text(&text, "%-22s%u of %u\n", "landmarks kept", m.num_landmarks, m.num_landmarks_before);
   append_text(&text, "%-22s%u, %.2f a landmark\n", "descriptors", m.num_descriptors,
-         static_cast<double>(m.num_descriptors) / std::max(1U, m.num_landmarks));
+              static_cast<double>(m.num_descriptors) / std::max(1U, m.num_landmarks));
   append_text(&text, "%-22s%u of %u views cover all landmarks\n", "keyframes", m.num_keyframes, m.num_keyframes_before);
   append_text(&text, "%-22s%llu bytes, %.1f a landmark\n", "size", static_cast<unsigned long long>(m.file_bytes),
-         static_cast<double>(m.file_bytes) / std::max(1U, m.num_landmarks));
+              static_cast<double>(m.file_bytes) / std::max(1U, m.num_landmarks));
   if (r.is_datum_from_b) append_text(&text, "%-22sthat of the second map, carried over\n", "datum");
   append_text(&text, "%-22s%.1f s\n", "time of merging", s.seconds);
   return text;
@@ -91,9 +89,8 @@ std::string format_json(const MergeSummary& s) {
   json["first"] = {{"map", s.map_a}, {"landmarks", r.num_landmarks_a}, {"keyframes", r.num_keyframes_a}};
   json["second"] = {{"map", s.map_b}, {"landmarks", r.num_landmarks_b}, {"keyframes", r.num_keyframes_b}};
   json["localized_keyframes"] = r.num_localized;
-  json["queries"] = {{"asked", r.registration.num_queries},
-                     {"convincing", r.registration.num_convincing},
-                     {"refused", r.registration.num_disagreeing}};
+  json["queries"] = {
+      {"asked", r.registration.num_queries}, {"convincing", r.registration.num_convincing}, {"refused", r.registration.num_disagreeing}};
   json["T_first_second"] = {{"translation_m", {T.translation.x(), T.translation.y(), T.translation.z()}},
                             {"rotation_wxyz", {T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()}}};
   json["disagreement"] = {

@@ -72,7 +72,7 @@ std::string url_of(const std::string& folder, const std::vector<std::uint64_t>& 
 struct Selection {
   std::string folder;
   Sequence sequence;
-  std::vector<std::size_t> frames;   ///< indices in the sequence, ascending
+  std::vector<std::size_t> frames;  ///< indices in the sequence, ascending
 };
 
 Result<Selection> select(const PosedFramesRequest& request) {
@@ -121,9 +121,9 @@ Result<PosedFrames> find_posed_frames(const PosedFramesRequest& request, const R
     }
   }
   if (result.T_map_camera_of_frame.empty()) {
-    return {ErrorCode::kInvalid,
-            request.sequence + ": none of the " + std::to_string(result.num_selected) + " selected frames has a pose in " +
-                (are_embedded ? std::string("the recording") : request.poses) + "; check --frames and the stamps of --poses"};
+    return {ErrorCode::kInvalid, request.sequence + ": none of the " + std::to_string(result.num_selected) +
+                                     " selected frames has a pose in " + (are_embedded ? std::string("the recording") : request.poses) +
+                                     "; check --frames and the stamps of --poses"};
   }
   std::vector<std::uint64_t> with_pose;
   for (const auto& [frame, T_map_camera] : result.T_map_camera_of_frame) with_pose.push_back(frame);

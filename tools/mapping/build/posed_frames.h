@@ -19,19 +19,18 @@ namespace camloc::map_tool {
 enum class PoseCamera { kAuto, kColor, kDepth };
 
 struct PosedFramesRequest {
-  std::string sequence;            ///< replay://DIR or DIR
-  std::string poses = "embedded";  ///< or a TUM trajectory file, or colmap:FOLDER of a text model of the colour images
-  std::string include, exclude;    ///< Python slices
-  PoseCamera pose_camera =
-      PoseCamera::kAuto;  ///< whose poses they are; kAuto: embedded ones as the camera file says, files colour
+  std::string sequence;                        ///< replay://DIR or DIR
+  std::string poses = "embedded";              ///< or a TUM trajectory file, or colmap:FOLDER of a text model of the colour images
+  std::string include, exclude;                ///< Python slices
+  PoseCamera pose_camera = PoseCamera::kAuto;  ///< whose poses they are; kAuto: embedded ones as the camera file says, files colour
 };
 
 /// The chosen frames of a recording, whatever is known about where they were.
 struct SelectedFrames {
   std::string folder;
-  std::string url;   ///< for open_frame_source
+  std::string url;  ///< for open_frame_source
   std::uint64_t num_recorded = 0, num_selected = 0;
-  bool has_depth = false;   ///< any of the recording has
+  bool has_depth = false;  ///< any of the recording has
 };
 
 /// Reads `sequence`, `include` and `exclude` of the request only.
@@ -42,7 +41,7 @@ struct PosedFrames {
   std::string url;                                        ///< for open_frame_source: only frames with a pose
   std::map<std::uint64_t, Rigid3> T_map_camera_of_frame;  ///< by index in the whole recording
   std::uint64_t num_recorded = 0, num_selected = 0, num_without_pose = 0;
-  std::optional<ModelScale> scale;                        ///< how a COLMAP model was brought to metres
+  std::optional<ModelScale> scale;  ///< how a COLMAP model was brought to metres
 };
 
 /// Errors: those of reading the sequence and the poses, a URL that is no recording, a selection without any posed frame, a

@@ -29,11 +29,11 @@ struct RecordHeader {
   std::uint64_t frame = 0;
   std::int64_t stamp_ns = 0;
   std::uint32_t num_features = 0, num_surface = 0;
-  std::uint32_t num_patches = 0;   ///< as many as features, or none
-  std::uint32_t num_cells = 0;     ///< of the thumbnail
+  std::uint32_t num_patches = 0;  ///< as many as features, or none
+  std::uint32_t num_cells = 0;    ///< of the thumbnail
   std::uint16_t thumbnail_width = 0, cell_px = 0;
   std::uint32_t reserved = 0;
-  std::uint64_t hash = 0;   ///< of the fields above and the arrays
+  std::uint64_t hash = 0;  ///< of the fields above and the arrays
 };
 static_assert(sizeof(RecordHeader) == 48);
 
@@ -58,8 +58,8 @@ const char* get(const char* from, std::size_t count, std::vector<T>* values) {
 
 std::size_t array_bytes(const RecordHeader& header) {
   const std::size_t per_feature = sizeof(PackedKeypoint) + sizeof(Descriptor) + sizeof(Eigen::Vector2f) + sizeof(float);
-  return header.num_features * per_feature + header.num_surface * sizeof(Eigen::Vector3f) +
-         header.num_patches * sizeof(FeaturePatch) + header.num_cells * 2 * sizeof(std::uint16_t);
+  return header.num_features * per_feature + header.num_surface * sizeof(Eigen::Vector3f) + header.num_patches * sizeof(FeaturePatch) +
+         header.num_cells * 2 * sizeof(std::uint16_t);
 }
 
 std::uint64_t hash_of(RecordHeader header, const std::vector<char>& bytes) {
@@ -158,7 +158,9 @@ Status ViewLogReader::next(LoggedView* logged) {
   file_.read(reinterpret_cast<char*>(&header), sizeof header);
   if (!file_ || header.num_features > kMaxFeatures || header.num_surface > kMaxSurface) return end;
   if (header.num_patches != 0 && header.num_patches != header.num_features) return end;
-  if (header.num_cells > kMaxCells || (header.num_cells > 0 && (header.thumbnail_width == 0 || header.num_cells % header.thumbnail_width != 0))) return end;
+  if (header.num_cells > kMaxCells ||
+      (header.num_cells > 0 && (header.thumbnail_width == 0 || header.num_cells % header.thumbnail_width != 0)))
+    return end;
   const std::size_t size = array_bytes(header);
   if (position_ + sizeof header + size > file_bytes_) return end;
   bytes_.resize(size);

@@ -21,10 +21,10 @@
 namespace camloc::map_tool {
 
 struct LoggedView {
-  std::uint64_t frame = 0;                     ///< index in the recording
-  ViewFeatures view;                           ///< the pose is not kept; the patches are where there are some
-  ViewThumbnail thumbnail;                     ///< may be empty
-  std::vector<Eigen::Vector3f> surface_m;      ///< coarse sample of what the depth camera saw, in the camera frame
+  std::uint64_t frame = 0;                 ///< index in the recording
+  ViewFeatures view;                       ///< the pose is not kept; the patches are where there are some
+  ViewThumbnail thumbnail;                 ///< may be empty
+  std::vector<Eigen::Vector3f> surface_m;  ///< coarse sample of what the depth camera saw, in the camera frame
 };
 
 /// Appends views. Not thread-safe.

@@ -10,12 +10,12 @@
 namespace camloc::map_tool {
 namespace {
 
-constexpr std::uint64_t kEarlyFrames = 30;        // enough to tell a broken sensor from a lens cap at the start
-constexpr double kMaxGapS = 0.5;                  // a longer one between stamps is a jump
+constexpr std::uint64_t kEarlyFrames = 30;  // enough to tell a broken sensor from a lens cap at the start
+constexpr double kMaxGapS = 0.5;            // a longer one between stamps is a jump
 constexpr std::size_t kMinFeatures = 100, kMinWithDepth = 60;
 constexpr int kMinInliers = 60;
 constexpr double kMinMovedM = 0.05, kMinTurnedRad = 0.09;
-constexpr std::uint64_t kMaxHole = 5;             // good frames inside a weak spot
+constexpr std::uint64_t kMaxHole = 5;  // good frames inside a weak spot
 
 /// All valid depths within one unit of each other?
 bool is_constant(ImageView<std::uint16_t> depth, std::uint16_t* value) {
@@ -92,8 +92,9 @@ Status WalkCheck::verdict(const SlamResult& result) const {
     turned_rad = std::max(turned_rad, rotation_distance_rad(pose.T_map_camera.rotation, first.T_map_camera.rotation));
   }
   if (moved_m >= kMinMovedM || turned_rad >= kMinTurnedRad) return Status::ok();
-  return {ErrorCode::kInvalid, tools::text_of("the camera stood still: it moved by %.1f cm and turned by %.1f deg in %zu frames; a map needs a walk",
-                                              100 * moved_m, tools::degrees(turned_rad), result.poses.size())};
+  return {ErrorCode::kInvalid,
+          tools::text_of("the camera stood still: it moved by %.1f cm and turned by %.1f deg in %zu frames; a map needs a walk",
+                         100 * moved_m, tools::degrees(turned_rad), result.poses.size())};
 }
 
 const char* WalkCheck::weakness_of(const Note& note) const {
@@ -107,7 +108,7 @@ const char* WalkCheck::weakness_of(const Note& note) const {
 
 std::vector<WeakSpot> WalkCheck::weak_spots() const {
   std::vector<WeakSpot> spots;
-  std::uint64_t last = 0;   // position in notes_ of the last weak frame
+  std::uint64_t last = 0;  // position in notes_ of the last weak frame
   for (std::uint64_t i = 0; i < notes_.size(); ++i) {
     const char* what = weakness_of(notes_[i]);
     if (what == nullptr) continue;

@@ -18,9 +18,9 @@ namespace camloc::map_tool {
 
 /// A stretch of the recording where the map will be thin or missing.
 struct WeakSpot {
-  std::uint64_t first_frame = 0, last_frame = 0;   ///< indices in the recording
-  std::string what;                                ///< "lost", "few landmarks", ...
-  std::string advice;                              ///< what to do about it
+  std::uint64_t first_frame = 0, last_frame = 0;  ///< indices in the recording
+  std::string what;                               ///< "lost", "few landmarks", ...
+  std::string advice;                             ///< what to do about it
 };
 
 class WalkCheck {

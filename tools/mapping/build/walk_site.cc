@@ -69,7 +69,8 @@ std::vector<ControlLandmark> control_landmarks(const Survey& survey, const Geore
   const Rigid3 T_map_wcs = fit.datum.T_wcs_map.inverse();
   for (const GeorefPoint& point : fit.points) {
     if (!is_in_fit(point.verdict)) continue;
-    const auto surveyed = std::find_if(survey.points.begin(), survey.points.end(), [&](const ControlPoint& p) { return p.name == point.name; });
+    const auto surveyed =
+        std::find_if(survey.points.begin(), survey.points.end(), [&](const ControlPoint& p) { return p.name == point.name; });
     ControlLandmark control{T_map_wcs * surveyed->p_wcs, surveyed->sigma_m, {}};
     for (const ControlObservation& o : survey.observations) {
       const auto measured = survey.measurements.find(o.line);

@@ -29,13 +29,13 @@ void level(const Eigen::Vector3d& up_map, std::uint32_t segment, SlamResult* res
 
 /// Control points as a build takes them: names, site coordinates, pixels of frames.
 struct SurveyRequest {
-  std::string points_path, observed_path;   ///< both or none
+  std::string points_path, observed_path;  ///< both or none
   bool is_excluding_suspects = false;
 };
 
 struct Survey {
   std::vector<ControlPoint> points;
-  std::vector<ControlObservation> observations;   ///< all of them pixels
+  std::vector<ControlObservation> observations;  ///< all of them pixels
   PixelMeasurements measurements;
 };
 
@@ -46,7 +46,7 @@ struct Survey {
 
 /// Fits site and map, adjusts the map held by the points, fits again. The datum is empty when the fit has a problem, which
 /// `summary` then names; `result` is left as it was.
-[[nodiscard]] std::optional<WcsDatum> adjust_to_survey(const SurveyRequest& request, const Survey& survey, const RgbdCamera& camera, Slam* slam,
-                                                       SlamResult* result, GeorefSummary* summary);
+[[nodiscard]] std::optional<WcsDatum> adjust_to_survey(const SurveyRequest& request, const Survey& survey, const RgbdCamera& camera,
+                                                       Slam* slam, SlamResult* result, GeorefSummary* summary);
 
 }  // namespace camloc::map_tool

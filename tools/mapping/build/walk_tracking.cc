@@ -32,7 +32,12 @@ std::string note_of(const SlamCounts& counts) {
 class Pass {
  public:
   Pass(const WalkRequest& request, Slam* slam, WalkCheck* check)
-      : request_(request), slam_(slam), check_(check), extractor_(request.camera, request.orb), thumbnails_(request.camera), progress_(request.num_frames) {}
+      : request_(request),
+        slam_(slam),
+        check_(check),
+        extractor_(request.camera, request.orb),
+        thumbnails_(request.camera),
+        progress_(request.num_frames) {}
 
   /// Processes what an earlier pass has seen; says where its log ends.
   Status replay(std::uint64_t* log_bytes) {
@@ -81,10 +86,11 @@ class Pass {
       return Status::ok();
     }
     if (const Status checked = extractor_.check(frame); !checked.is_ok()) return checked;
-    LoggedView logged{frame.sequence, extractor_.extract_with_patches(frame), thumbnails_.make(frame), sample_surface(request_.camera, frame.depth)};
+    LoggedView logged{frame.sequence, extractor_.extract_with_patches(frame), thumbnails_.make(frame),
+                      sample_surface(request_.camera, frame.depth)};
     check_->see_frame(frame, logged.view.size(), num_with_depth(logged.view));
     if (const Status usable = check_->early_verdict(); !usable.is_ok()) return usable;
-    if (!track(logged)) logged.view.patches.clear();   // only those of keyframes are asked for again
+    if (!track(logged)) logged.view.patches.clear();  // only those of keyframes are asked for again
     return log->add(logged);
   }
 
@@ -119,7 +125,7 @@ Result<WalkEnd> track_walk(const WalkRequest& request, Slam* slam, WalkCheck* ch
   std::uint64_t log_bytes = 0;
   if (request.is_resumed) {
     if (const Status replayed = pass.replay(&log_bytes); !replayed.is_ok()) return replayed;
-    if (pass.is_interrupted()) return pass.end();   // the rest of the log is for the next time
+    if (pass.is_interrupted()) return pass.end();  // the rest of the log is for the next time
   }
   auto log = request.is_resumed ? ViewLogWriter::append(request.log_path, log_bytes)
                                 : ViewLogWriter::create(request.log_path, walk_identity(request));

@@ -19,13 +19,13 @@
 namespace camloc::map_tool {
 
 struct WalkRequest {
-  std::string url;                ///< for open_frame_source
-  std::uint64_t num_frames = 0;   ///< that it will deliver, 0 = unknown
+  std::string url;               ///< for open_frame_source
+  std::uint64_t num_frames = 0;  ///< that it will deliver, 0 = unknown
   RgbdCamera camera;
   OrbOptions orb;
   SlamOptions slam;
-  std::string log_path;           ///< of the view log
-  bool is_resumed = false;        ///< go on from the log
+  std::string log_path;     ///< of the view log
+  bool is_resumed = false;  ///< go on from the log
 };
 
 /// Surfaces as a keyframe saw them, in its camera frame.
@@ -37,10 +37,10 @@ struct KeyframeSurface {
 /// How the pass ended.
 struct WalkEnd {
   std::vector<KeyframeSurface> surfaces;
-  bool is_interrupted = false;        ///< Ctrl-C: what is there is a map of the first part
-  std::uint64_t num_resumed = 0;      ///< views that came from the log
-  tools::FrameCounts reading;         ///< of this pass, without what came from the log
-  std::uint64_t num_without_depth = 0;   ///< colour images without a depth image
+  bool is_interrupted = false;          ///< Ctrl-C: what is there is a map of the first part
+  std::uint64_t num_resumed = 0;        ///< views that came from the log
+  tools::FrameCounts reading;           ///< of this pass, without what came from the log
+  std::uint64_t num_without_depth = 0;  ///< colour images without a depth image
 };
 
 /// What makes a log belong to a build.

@@ -71,8 +71,7 @@ std::vector<CellGrid::Place> CellGrid::best_places(const std::vector<Eigen::Vect
     for (std::size_t axis = 0; axis < 3; ++axis) extent[axis] = std::max(extent[axis], points.back()[axis] + 1);
   }
   std::array<int, 3> first{}, last{};
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    first[axis] = -extent[axis] / 2, last[axis] = size_[axis] - extent[axis] + extent[axis] / 2;
+  for (std::size_t axis = 0; axis < 3; ++axis) first[axis] = -extent[axis] / 2, last[axis] = size_[axis] - extent[axis] + extent[axis] / 2;
   std::vector<std::uint16_t> scores(static_cast<std::size_t>(std::max(0, last[0] - first[0] + 1)));
   std::vector<Scored> best;
   for (int tz = first[2]; tz <= last[2]; ++tz) {
@@ -87,14 +86,12 @@ std::vector<CellGrid::Place> CellGrid::best_places(const std::vector<Eigen::Vect
   std::vector<std::array<int, 3>> taken;
   for (const Scored& scored : best) {
     const auto is_near = [&](const std::array<int, 3>& other) {
-      return std::abs(other[0] - scored.cell[0]) < 3 && std::abs(other[1] - scored.cell[1]) < 3 &&
-             std::abs(other[2] - scored.cell[2]) < 3;
+      return std::abs(other[0] - scored.cell[0]) < 3 && std::abs(other[1] - scored.cell[1]) < 3 && std::abs(other[2] - scored.cell[2]) < 3;
     };
     if (std::any_of(taken.begin(), taken.end(), is_near)) continue;
     taken.push_back(scored.cell);
     const Eigen::Vector3d cell(scored.cell[0], scored.cell[1], scored.cell[2]);
-    places.push_back(
-        {low_m_ + cell_m_ * cell - low, static_cast<double>(scored.score) / (2.0 * static_cast<double>(points.size()))});
+    places.push_back({low_m_ + cell_m_ * cell - low, static_cast<double>(scored.score) / (2.0 * static_cast<double>(points.size()))});
     if (places.size() >= max_places) break;
   }
   return places;

@@ -28,8 +28,7 @@ class CellGrid {
 
  private:
   /// Scores of all x at one row of translations; `points` are cells relative to their lower corner.
-  void score_row(const std::vector<std::array<int, 3>>& points, int ty, int tz, int first_x,
-                 std::vector<std::uint16_t>* scores) const;
+  void score_row(const std::vector<std::array<int, 3>>& points, int ty, int tz, int first_x, std::vector<std::uint16_t>* scores) const;
 
   double cell_m_ = 0;
   Eigen::Vector3d low_m_ = Eigen::Vector3d::Zero();

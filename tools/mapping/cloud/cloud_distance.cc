@@ -63,8 +63,8 @@ void measure_landmarks(std::span<const Eigen::Vector3d> landmarks_m, CloudIndex*
   result->all = statistics_of(result->point_m);
 }
 
-void measure_coverage(std::span<const Eigen::Vector3d> landmarks_m, std::span<const Eigen::Vector3d> keyframes_m,
-                      const CloudIndex& cloud, const Box& map_box, const DistanceOptions& options, CloudDistances* result) {
+void measure_coverage(std::span<const Eigen::Vector3d> landmarks_m, std::span<const Eigen::Vector3d> keyframes_m, const CloudIndex& cloud,
+                      const Box& map_box, const DistanceOptions& options, CloudDistances* result) {
   CloudAccumulator accumulator({options.cell_m, 1, 1});
   for (const Eigen::Vector3f& p : cloud.points_m()) accumulator.add(p.cast<double>());
   const PointCloud cells = accumulator.finish();
@@ -80,8 +80,8 @@ void measure_coverage(std::span<const Eigen::Vector3d> landmarks_m, std::span<co
   }
   result->cells = statistics_of(distances_m);
   result->num_cells = distances_m.size();
-  result->num_covered = static_cast<std::uint64_t>(std::count_if(
-      distances_m.begin(), distances_m.end(), [&](float d) { return static_cast<double>(d) <= options.covered_m; }));
+  result->num_covered = static_cast<std::uint64_t>(
+      std::count_if(distances_m.begin(), distances_m.end(), [&](float d) { return static_cast<double>(d) <= options.covered_m; }));
 }
 
 }  // namespace
@@ -101,9 +101,7 @@ DistanceStatistics statistics_of(std::span<const float> values_m) {
     num_5cm += d <= 0.05;
   }
   const double count = static_cast<double>(sorted.size());
-  const auto percentile = [&](double share) {
-    return static_cast<double>(sorted[static_cast<std::size_t>(share * (count - 1) + 0.5)]);
-  };
+  const auto percentile = [&](double share) { return static_cast<double>(sorted[static_cast<std::size_t>(share * (count - 1) + 0.5)]); };
   result.mean_m = sum / count;
   result.rms_m = std::sqrt(sum_squares / count);
   result.median_m = percentile(0.5);

@@ -44,8 +44,7 @@ struct CloudDistances {
 };
 
 /// All points in the frame of the cloud.
-[[nodiscard]] CloudDistances measure_distances(std::span<const Eigen::Vector3d> landmarks_m,
-                                               std::span<const Eigen::Vector3d> keyframes_m, CloudIndex* cloud,
-                                               const DistanceOptions& options);
+[[nodiscard]] CloudDistances measure_distances(std::span<const Eigen::Vector3d> landmarks_m, std::span<const Eigen::Vector3d> keyframes_m,
+                                               CloudIndex* cloud, const DistanceOptions& options);
 
 }  // namespace camloc::map_tool

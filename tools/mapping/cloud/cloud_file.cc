@@ -24,14 +24,12 @@ constexpr const char* kKnownKinds = "PLY, PCD, LAS and text tables (XYZ, PTS, CS
 
 std::string extension_of(const std::string& name) {
   std::string extension = std::filesystem::path(name).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
 }
 
 bool is_text(std::string_view bytes) {
-  return std::all_of(bytes.begin(), bytes.end(),
-                     [](char c) { return (c >= ' ' && c != '\x7f') || c == '\t' || c == '\r' || c == '\n'; });
+  return std::all_of(bytes.begin(), bytes.end(), [](char c) { return (c >= ' ' && c != '\x7f') || c == '\t' || c == '\r' || c == '\n'; });
 }
 
 Result<Reader> choose_reader(CloudInput* input) {
@@ -98,8 +96,7 @@ double read_scalar(ScalarType type, const std::byte* bytes, bool is_big_endian) 
   return 0;
 }
 
-Result<PointCloud> read_cloud(std::istream& stream, const std::string& name, const CloudOptions& options,
-                              const CloudProgress& progress) {
+Result<PointCloud> read_cloud(std::istream& stream, const std::string& name, const CloudOptions& options, const CloudProgress& progress) {
   CloudInput input(stream, name, progress);
   const auto reader = choose_reader(&input);
   if (!reader.is_ok()) return reader.status();
@@ -110,8 +107,7 @@ Result<PointCloud> read_cloud(std::istream& stream, const std::string& name, con
   PointCloud cloud = accumulator.finish();
   if (cloud.num_read == 0) return input.error(ErrorCode::kInvalid, "holds no points");
   if (cloud.points_m.empty()) {
-    return input.error(ErrorCode::kInvalid,
-                       "none of its " + std::to_string(cloud.num_read) + " points is valid (not finite, or withheld)");
+    return input.error(ErrorCode::kInvalid, "none of its " + std::to_string(cloud.num_read) + " points is valid (not finite, or withheld)");
   }
   return cloud;
 }

@@ -20,9 +20,7 @@ constexpr std::size_t kMaxPlanePoints = 256;  // a plane is known well enough th
 struct Adaptor {
   std::span<const Eigen::Vector3f> points;
   [[nodiscard]] std::size_t kdtree_get_point_count() const { return points.size(); }
-  [[nodiscard]] float kdtree_get_pt(std::uint32_t index, std::size_t axis) const {
-    return points[index][static_cast<Eigen::Index>(axis)];
-  }
+  [[nodiscard]] float kdtree_get_pt(std::uint32_t index, std::size_t axis) const { return points[index][static_cast<Eigen::Index>(axis)]; }
   template <typename Box>
   bool kdtree_get_bbox(Box&) const {
     return false;
@@ -31,8 +29,7 @@ struct Adaptor {
 
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Adaptor>, Adaptor, 3, std::uint32_t>;
 
-CloudIndex::Plane fit_plane(std::span<const Eigen::Vector3f> points, std::span<const std::uint32_t> neighbors,
-                            std::uint32_t center) {
+CloudIndex::Plane fit_plane(std::span<const Eigen::Vector3f> points, std::span<const std::uint32_t> neighbors, std::uint32_t center) {
   const Eigen::Vector3d origin = points[center].cast<double>();
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
@@ -48,8 +45,8 @@ CloudIndex::Plane fit_plane(std::span<const Eigen::Vector3f> points, std::span<c
   CloudIndex::Plane plane;
   plane.normal = solver.eigenvectors().col(0).normalized();
   if (!plane.normal.allFinite()) plane.normal = Eigen::Vector3d::UnitZ();
-  plane.is_flat = neighbors.size() >= 5 &&
-                  std::sqrt(std::max(0.0, solver.eigenvalues()[0])) < 0.33 * std::sqrt(std::max(0.0, solver.eigenvalues()[1]));
+  plane.is_flat =
+      neighbors.size() >= 5 && std::sqrt(std::max(0.0, solver.eigenvalues()[0])) < 0.33 * std::sqrt(std::max(0.0, solver.eigenvalues()[1]));
   plane.point_m = plane.is_flat ? Eigen::Vector3d(origin + mean) : origin;
   return plane;
 }

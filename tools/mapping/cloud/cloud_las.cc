@@ -29,8 +29,8 @@ T number_at(std::span<const std::byte> bytes, std::size_t offset, ScalarType typ
 Result<Header> parse_header(const CloudInput& input, std::span<const std::byte> bytes) {
   const int minor = std::to_integer<int>(bytes[25]), format = std::to_integer<int>(bytes[104]);
   if (std::to_integer<int>(bytes[24]) != 1 || minor > 4) {
-    return input.error(ErrorCode::kUnsupported, "LAS " + std::to_string(std::to_integer<int>(bytes[24])) + "." +
-                                                    std::to_string(minor) + " is not read, 1.0 to 1.4 are");
+    return input.error(ErrorCode::kUnsupported, "LAS " + std::to_string(std::to_integer<int>(bytes[24])) + "." + std::to_string(minor) +
+                                                    " is not read, 1.0 to 1.4 are");
   }
   if ((format & 0xC0) != 0) {
     return input.error(ErrorCode::kUnsupported,
@@ -58,8 +58,7 @@ Result<Header> parse_header(const CloudInput& input, std::span<const std::byte> 
 Status check(const CloudInput& input, const Header& header) {
   if (header.record_bytes < kRecordBytes[static_cast<std::size_t>(header.point_format)]) {
     return input.error(ErrorCode::kCorrupt, "records of " + std::to_string(header.record_bytes) +
-                                                " bytes are too short for LAS point format " +
-                                                std::to_string(header.point_format));
+                                                " bytes are too short for LAS point format " + std::to_string(header.point_format));
   }
   if (!header.scale.allFinite() || !header.offset.allFinite() || (header.scale.array() == 0).any()) {
     return input.error(ErrorCode::kCorrupt, "scale or offset of the coordinates are no numbers");
@@ -68,8 +67,7 @@ Status check(const CloudInput& input, const Header& header) {
   const auto end = checked_end(header.points_offset, header.num_points, header.record_bytes);
   if (!end || *end > input.total()) {
     return input.truncated("the header promises " + std::to_string(header.num_points) + " points of " +
-                           std::to_string(header.record_bytes) + " bytes, the file has " + std::to_string(input.total()) +
-                           " bytes");
+                           std::to_string(header.record_bytes) + " bytes, the file has " + std::to_string(input.total()) + " bytes");
   }
   return Status::ok();
 }

@@ -100,8 +100,7 @@ Result<Header> read_header(CloudInput* input) {
     const std::string_view text = trimmed(*line);
     if (text.empty() || text.front() == '#') continue;
     const auto words = split_fields(text, " \t");
-    if (!parse_header_line(words, &header, &width))
-      return line_error(input->name(), number, "no PCD header line: " + in_quotes(text));
+    if (!parse_header_line(words, &header, &width)) return line_error(input->name(), number, "no PCD header line: " + in_quotes(text));
     if (words[0] == "DATA") return header;
   }
   return input->error(ErrorCode::kCorrupt, "the PCD header has more than " + std::to_string(kMaxHeaderLines) + " lines");
@@ -125,8 +124,7 @@ std::optional<Axes> find_axes(const std::vector<Field>& fields) {
 }
 
 Status cut_off(const CloudInput& input, const Header& header, std::uint64_t done) {
-  return input.truncated("the header promises " + std::to_string(header.num_points) + " points, the file has " +
-                         std::to_string(done));
+  return input.truncated("the header promises " + std::to_string(header.num_points) + " points, the file has " + std::to_string(done));
 }
 
 Status read_ascii(CloudInput* input, const Header& header, const Axes& axes, CloudAccumulator* cloud) {
@@ -139,8 +137,7 @@ Status read_ascii(CloudInput* input, const Header& header, const Axes& axes, Clo
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto value = axes.column[axis] < fields.size() ? parse_double(fields[axes.column[axis]]) : std::nullopt;
       if (!value)
-        return input->error(ErrorCode::kCorrupt,
-                            "point " + std::to_string(i) + " is no line of numbers: " + in_quotes(trimmed(*line)));
+        return input->error(ErrorCode::kCorrupt, "point " + std::to_string(i) + " is no line of numbers: " + in_quotes(trimmed(*line)));
       p[static_cast<Eigen::Index>(axis)] = *value;
     }
     cloud->add(p);
@@ -189,8 +186,7 @@ bool unpack_lzf(std::span<const std::byte> packed, std::span<std::byte> unpacked
   return out == unpacked.size();
 }
 
-Status read_compressed(CloudInput* input, const Header& header, const Axes& axes, std::size_t record_bytes,
-                       CloudAccumulator* cloud) {
+Status read_compressed(CloudInput* input, const Header& header, const Axes& axes, std::size_t record_bytes, CloudAccumulator* cloud) {
   const auto sizes = input->read(8);
   if (sizes.empty()) return input->truncated("the sizes of the compressed data are missing");
   const auto packed_bytes = static_cast<std::uint64_t>(read_scalar(ScalarType::kUint32, sizes.data(), false));
@@ -198,8 +194,8 @@ Status read_compressed(CloudInput* input, const Header& header, const Axes& axes
   if (packed_bytes > input->remaining()) return input->truncated("the compressed data are shorter than they say");
   if (checked_multiply(header.num_points, record_bytes) != unpacked_bytes || unpacked_bytes > kMaxLzfExpansion * packed_bytes ||
       unpacked_bytes > kMaxUnpackedBytes) {
-    return input->error(ErrorCode::kCorrupt, "the compressed data unpack to " + std::to_string(unpacked_bytes) +
-                                                 " bytes, which is not " + std::to_string(header.num_points) + " points");
+    return input->error(ErrorCode::kCorrupt, "the compressed data unpack to " + std::to_string(unpacked_bytes) + " bytes, which is not " +
+                                                 std::to_string(header.num_points) + " points");
   }
   std::vector<std::byte> packed(packed_bytes), unpacked(unpacked_bytes);
   for (std::size_t done = 0; done < packed.size();) {

@@ -106,8 +106,7 @@ Result<Header> read_header(CloudInput* input) {
       if (!has_format) return input->error(ErrorCode::kCorrupt, "the PLY header has no format line");
       return header;
     }
-    if (!parse_header_line(text, &header, &has_format))
-      return line_error(input->name(), number, "no PLY header line: " + in_quotes(text));
+    if (!parse_header_line(text, &header, &has_format)) return line_error(input->name(), number, "no PLY header line: " + in_quotes(text));
   }
   return input->error(ErrorCode::kCorrupt, "the PLY header has more than " + std::to_string(kMaxHeaderLines) + " lines");
 }
@@ -126,8 +125,8 @@ std::optional<std::array<std::size_t, 3>> find_axes(const Element& element) {
 }
 
 Status cut_off(const CloudInput& input, const Element& element, std::uint64_t done) {
-  return input.truncated("the header promises " + std::to_string(element.count) + " of element '" + element.name +
-                         "', the file has " + std::to_string(done));
+  return input.truncated("the header promises " + std::to_string(element.count) + " of element '" + element.name + "', the file has " +
+                         std::to_string(done));
 }
 
 /// One binary element, its lists skipped; `values` gets the scalars. False where the file ends.
@@ -158,8 +157,7 @@ Status read_binary_records(CloudInput* input, const Element& element, bool is_bi
     if (record.empty()) return cut_off(*input, element, i);
     Eigen::Vector3d p;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      p[static_cast<Eigen::Index>(axis)] =
-          read_scalar(element.properties[axes[axis]].type, record.data() + offsets[axis], is_big_endian);
+      p[static_cast<Eigen::Index>(axis)] = read_scalar(element.properties[axes[axis]].type, record.data() + offsets[axis], is_big_endian);
     }
     cloud->add(p);
   }
@@ -193,8 +191,7 @@ bool parse_ascii_element(std::string_view line, const Element& element, std::vec
   return true;
 }
 
-Status read_ascii_vertices(CloudInput* input, const Element& element, const std::array<std::size_t, 3>& axes,
-                           CloudAccumulator* cloud) {
+Status read_ascii_vertices(CloudInput* input, const Element& element, const std::array<std::size_t, 3>& axes, CloudAccumulator* cloud) {
   std::vector<double> values(element.properties.size());
   for (std::uint64_t i = 0; i < element.count;) {
     const auto line = input->read_line();

@@ -77,9 +77,7 @@ std::vector<Correspondence> find_correspondences(const std::vector<Eigen::Vector
   const auto num_kept =
       std::max(std::min(kMinCorrespondences, pairs.size()), static_cast<std::size_t>(trim * static_cast<double>(pairs.size())));
   if (num_kept < pairs.size()) {
-    const auto is_closer = [](const Correspondence& a, const Correspondence& b) {
-      return a.neighbor.distance_m < b.neighbor.distance_m;
-    };
+    const auto is_closer = [](const Correspondence& a, const Correspondence& b) { return a.neighbor.distance_m < b.neighbor.distance_m; };
     std::nth_element(pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(num_kept), pairs.end(), is_closer);
     pairs.resize(num_kept);
   }
@@ -136,8 +134,7 @@ Result<Registration> register_points(std::span<const Eigen::Vector3d> points_map
     const auto pairs = find_correspondences(points, *cloud, result.T_cloud_map, limit_m, trim);
     if (pairs.size() < kMinCorrespondences) {
       return {ErrorCode::kInvalid, "only " + std::to_string(pairs.size()) + " of " + std::to_string(points.size()) +
-                                       " landmarks have a point of the cloud within " + std::to_string(limit_m).substr(0, 4) +
-                                       " m"};
+                                       " landmarks have a point of the cloud within " + std::to_string(limit_m).substr(0, 4) + " m"};
     }
     const Eigen::Vector3d center = mean_of(pairs);
     const Equations equations = build_equations(pairs, cloud, center);

@@ -20,9 +20,7 @@ namespace camloc::map_tool {
 struct Similarity3 {
   double scale = 1;
   Rigid3 rigid;
-  [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& p) const {
-    return scale * (rigid.rotation * p) + rigid.translation;
-  }
+  [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& p) const { return scale * (rigid.rotation * p) + rigid.translation; }
 };
 
 struct RegistrationOptions {
@@ -51,8 +49,8 @@ struct Registration {
 /// 1992), trimmed (Chetverikov, Svirko, Stepanov, Krsek, "The trimmed iterative closest point algorithm", 2002), with Cauchy
 /// weights whose width follows the residuals, solved by Gauss-Newton with a little damping; at the end some iterations without
 /// trimming. kInvalid: fewer than ten correspondences within the distance.
-[[nodiscard]] Result<Registration> register_points(std::span<const Eigen::Vector3d> points_map, CloudIndex* cloud,
-                                                   const Similarity3& start, const RegistrationOptions& options);
+[[nodiscard]] Result<Registration> register_points(std::span<const Eigen::Vector3d> points_map, CloudIndex* cloud, const Similarity3& start,
+                                                   const RegistrationOptions& options);
 
 /// A start without any hint.
 struct CoarseStart {
@@ -68,7 +66,7 @@ struct CoarseStart {
                                                                   const Eigen::Vector3d& cloud_origin_m);
 
 /// Mean over all points of the distance to the cloud, none counting more than `max_distance_m`: compares registrations.
-[[nodiscard]] double capped_mean_distance(std::span<const Eigen::Vector3d> points_map, const CloudIndex& cloud,
-                                          const Rigid3& T_cloud_map, double max_distance_m);
+[[nodiscard]] double capped_mean_distance(std::span<const Eigen::Vector3d> points_map, const CloudIndex& cloud, const Rigid3& T_cloud_map,
+                                          double max_distance_m);
 
 }  // namespace camloc::map_tool

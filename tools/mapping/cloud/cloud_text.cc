@@ -16,8 +16,7 @@ namespace {
 
 std::string lower(std::string_view text) {
   std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return result;
 }
 
@@ -38,9 +37,8 @@ class LineParser {
 
 /// Columns named x, y and z (or easting, northing, height) in a header line.
 std::optional<std::array<std::size_t, 3>> named_columns(const std::vector<std::string_view>& fields) {
-  constexpr std::array<std::array<std::string_view, 5>, 3> kNames = {{{"x", "x[m]", "x_m", "easting", "east"},
-                                                                      {"y", "y[m]", "y_m", "northing", "north"},
-                                                                      {"z", "z[m]", "z_m", "height", "elevation"}}};
+  constexpr std::array<std::array<std::string_view, 5>, 3> kNames = {
+      {{"x", "x[m]", "x_m", "easting", "east"}, {"y", "y[m]", "y_m", "northing", "north"}, {"z", "z[m]", "z_m", "height", "elevation"}}};
   std::array<std::size_t, 3> columns{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::size_t column = 0;
@@ -56,8 +54,7 @@ std::optional<std::array<std::size_t, 3>> named_columns(const std::vector<std::s
   return columns;
 }
 
-std::optional<Eigen::Vector3d> parse_point(const std::vector<std::string_view>& fields,
-                                           const std::array<std::size_t, 3>& columns) {
+std::optional<Eigen::Vector3d> parse_point(const std::vector<std::string_view>& fields, const std::array<std::size_t, 3>& columns) {
   Eigen::Vector3d p;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto value = columns[axis] < fields.size() ? parse_double(fields[columns[axis]]) : std::nullopt;
@@ -104,8 +101,7 @@ Status read_text_cloud(CloudInput* input, CloudAccumulator* cloud) {
         if (num_promised > input->remaining() / 6 + 1) break;
         continue;
       }
-      const bool is_header =
-          std::none_of(fields.begin(), fields.end(), [](std::string_view f) { return parse_double(f).has_value(); });
+      const bool is_header = std::none_of(fields.begin(), fields.end(), [](std::string_view f) { return parse_double(f).has_value(); });
       if (is_header && fields.size() >= 3) {
         may_be_header = false;
         continue;

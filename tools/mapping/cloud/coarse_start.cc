@@ -119,8 +119,7 @@ std::vector<Candidate> slide(const std::vector<Eigen::Vector3d>& samples, const 
     for (const Eigen::Vector3d& p : samples) points.push_back(R_grid_map * p);
     for (const CellGrid::Place& place : grid.best_places(points, 5)) {
       candidates.push_back(
-          {{Eigen::Quaterniond(Eigen::Matrix3d(cloud_axes * R_grid_map)).normalized(), cloud_axes * place.translation_m},
-           place.share});
+          {{Eigen::Quaterniond(Eigen::Matrix3d(cloud_axes * R_grid_map)).normalized(), cloud_axes * place.translation_m}, place.share});
     }
   }
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
@@ -130,14 +129,12 @@ std::vector<Candidate> slide(const std::vector<Eigen::Vector3d>& samples, const 
 
 }  // namespace
 
-Result<std::vector<CoarseStart>> find_coarse_starts(std::span<const Eigen::Vector3d> points_map,
-                                                    std::span<const Eigen::Vector3f> cloud_m,
+Result<std::vector<CoarseStart>> find_coarse_starts(std::span<const Eigen::Vector3d> points_map, std::span<const Eigen::Vector3f> cloud_m,
                                                     const Eigen::Vector3d& cloud_origin_m) {
   const std::vector<Eigen::Vector3d> cloud_cells = absolute(thinned(cloud_m, kCellM / 2)),
                                      map_cells = absolute(thinned(points_map, kCellM / 2));
   if (map_cells.size() < 20 || cloud_cells.size() < 20) {
-    return {ErrorCode::kInvalid,
-            "map or cloud is smaller than a metre, too small to find a start; give control points (--points)"};
+    return {ErrorCode::kInvalid, "map or cloud is smaller than a metre, too small to find a start; give control points (--points)"};
   }
   const std::vector<Eigen::Vector3d> samples = choose(absolute(thinned(map_cells, kCellM)), kNumSamples);
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
@@ -150,14 +147,11 @@ Result<std::vector<CoarseStart>> find_coarse_starts(std::span<const Eigen::Vecto
   for (const Eigen::Vector3d& p : cloud_cells) targets.push_back(p.cast<float>());
   const CloudIndex index(targets);
   for (Candidate& candidate : candidates) improve(samples, index, &candidate);
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
+  std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
 
   std::vector<CoarseStart> starts;
   for (const Candidate& candidate : candidates) {
-    const auto is_known = [&](const CoarseStart& start) {
-      return is_same_place(start.T_cloud_map, candidate.T_cloud_map, center);
-    };
+    const auto is_known = [&](const CoarseStart& start) { return is_same_place(start.T_cloud_map, candidate.T_cloud_map, center); };
     if (starts.size() >= kNumKept || std::any_of(starts.begin(), starts.end(), is_known)) continue;
     // The map's own frame as it is, so that the report can say how far off it was.
     const bool is_identity = is_same_place(identity, candidate.T_cloud_map, center);

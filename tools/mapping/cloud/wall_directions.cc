@@ -36,8 +36,8 @@ Eigen::Vector3d dominant(const std::vector<Eigen::Vector3d>& normals, const Eige
   const std::size_t step = normals.size() / kMaxGuesses + 1;
   for (std::size_t i = 0; i < normals.size(); i += step) {
     if (std::abs(normals[i].dot(across)) > kAcrossCosine) continue;
-    const auto count = static_cast<std::size_t>(std::count_if(
-        normals.begin(), normals.end(), [&](const Eigen::Vector3d& n) { return std::abs(n.dot(normals[i])) > kSameCosine; }));
+    const auto count = static_cast<std::size_t>(
+        std::count_if(normals.begin(), normals.end(), [&](const Eigen::Vector3d& n) { return std::abs(n.dot(normals[i])) > kSameCosine; }));
     if (count > best_count) best_count = count, best = normals[i];
   }
   for (int i = 0; i < kRefinements && best_count > 0; ++i) {

@@ -24,15 +24,15 @@ inline constexpr double kColmapPixelShift = 0.5;
 
 struct ColmapCamera {
   std::uint32_t id = 0;
-  std::string model;            ///< PINHOLE, OPENCV, ...
+  std::string model;  ///< PINHOLE, OPENCV, ...
   int width = 0, height = 0;
   std::vector<double> parameters;
 };
 
 /// A keypoint of an image that belongs to a point.
 struct ColmapObservation {
-  double u = 0, v = 0;          ///< COLMAP's pixels
-  std::uint32_t point = 0;      ///< index into ColmapModel::points
+  double u = 0, v = 0;      ///< COLMAP's pixels
+  std::uint32_t point = 0;  ///< index into ColmapModel::points
 };
 
 struct ColmapImage {

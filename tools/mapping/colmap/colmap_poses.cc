@@ -20,8 +20,8 @@ std::string file_name(const std::string& path) { return std::filesystem::path(pa
 Status check_image_sizes(const ColmapModel& model, const Intrinsics& color) {
   for (const ColmapCamera& camera : model.cameras) {
     if (camera.width == color.width && camera.height == color.height) continue;
-    return {ErrorCode::kInvalid, "camera " + std::to_string(camera.id) + " of the model takes images of " + std::to_string(camera.width) + "x" +
-                                     std::to_string(camera.height) + ", the camera file says " + std::to_string(color.width) + "x" +
+    return {ErrorCode::kInvalid, "camera " + std::to_string(camera.id) + " of the model takes images of " + std::to_string(camera.width) +
+                                     "x" + std::to_string(camera.height) + ", the camera file says " + std::to_string(color.width) + "x" +
                                      std::to_string(color.height) + "; make the model from the recording's own images"};
   }
   return Status::ok();
@@ -34,7 +34,8 @@ void append_pairs(const ColmapModel& model, std::uint32_t index, const Intrinsic
     if (!(seen.u >= 0 && seen.v >= 0 && seen.u <= size.width && seen.v <= size.height)) continue;
     const double model_depth = (image.T_camera_world * model.points[seen.point].position).z();
     if (!(model_depth > 0)) continue;
-    const float measured_m = lookup.depth_at(depth, static_cast<float>(seen.u - kColmapPixelShift), static_cast<float>(seen.v - kColmapPixelShift));
+    const float measured_m =
+        lookup.depth_at(depth, static_cast<float>(seen.u - kColmapPixelShift), static_cast<float>(seen.v - kColmapPixelShift));
     if (measured_m > 0) pairs->push_back({index, model_depth, static_cast<double>(measured_m)});
   }
 }
@@ -59,8 +60,9 @@ Result<std::vector<DepthPair>> measure_depths(const ColmapModel& model, const st
     const std::string& path = sequence.frames[frame_of_image[image]].depth_path;
     if (!reader.read_depth(path, &depth).is_ok()) continue;  // the build will count it as broken
     if (depth.width != camera.depth.width || depth.height != camera.depth.height) {
-      return {ErrorCode::kInvalid, path + ": is " + std::to_string(depth.width) + "x" + std::to_string(depth.height) + ", the camera file says " +
-                                       std::to_string(camera.depth.width) + "x" + std::to_string(camera.depth.height)};
+      return {ErrorCode::kInvalid, path + ": is " + std::to_string(depth.width) + "x" + std::to_string(depth.height) +
+                                       ", the camera file says " + std::to_string(camera.depth.width) + "x" +
+                                       std::to_string(camera.depth.height)};
     }
     append_pairs(model, image, camera.color, lookup, depth.view(), &pairs);
   }
@@ -78,14 +80,17 @@ Result<std::vector<std::size_t>> match_image_names(const ColmapModel& model, con
     const auto frames = frames_of_name.find(file_name(image.name));
     if (frames == frames_of_name.end()) {
       return {ErrorCode::kInvalid, "image " + in_quotes(image.name) + " of the model is no colour image of the recording (its first is " +
-                                       in_quotes(file_name(sequence.frames.front().color_path)) + "); names must be the same but for folders"};
+                                       in_quotes(file_name(sequence.frames.front().color_path)) +
+                                       "); names must be the same but for folders"};
     }
     if (frames->second.size() > 1) {
-      return {ErrorCode::kInvalid, "image " + in_quotes(image.name) + " of the model fits several frames of the recording; file names must differ"};
+      return {ErrorCode::kInvalid,
+              "image " + in_quotes(image.name) + " of the model fits several frames of the recording; file names must differ"};
     }
     const auto [other, is_new] = image_of_frame.emplace(frames->second.front(), image.name);
     if (!is_new) {
-      return {ErrorCode::kInvalid, "images " + in_quotes(other->second) + " and " + in_quotes(image.name) + " of the model are the same frame of the recording"};
+      return {ErrorCode::kInvalid,
+              "images " + in_quotes(other->second) + " and " + in_quotes(image.name) + " of the model are the same frame of the recording"};
     }
     frame_of_image.push_back(frames->second.front());
   }

@@ -154,11 +154,13 @@ Status parse_observations(const std::string& path, const TextLine& line, const P
   while (!trimmed(rest).empty()) {
     const auto pixel = take_finites<2>(&rest);
     const auto id = take_id<std::int64_t>(&rest);
-    if (!pixel || !id) return line_error(path, line.number, "the keypoints of " + in_quotes(image->name) + " are not triples X Y POINT3D_ID");
+    if (!pixel || !id)
+      return line_error(path, line.number, "the keypoints of " + in_quotes(image->name) + " are not triples X Y POINT3D_ID");
     if (*id == -1) continue;
     const auto index = index_of.find(static_cast<std::uint64_t>(*id));
     if (index == index_of.end()) {
-      return line_error(path, line.number, in_quotes(image->name) + " observes point " + std::to_string(*id) + ", which points3D.txt does not have");
+      return line_error(path, line.number,
+                        in_quotes(image->name) + " observes point " + std::to_string(*id) + ", which points3D.txt does not have");
     }
     image->observations.push_back({(*pixel)[0], (*pixel)[1], index->second});
   }
@@ -174,7 +176,9 @@ Status read_images(const std::string& path, std::string_view text, const PointIn
     if (!image) return line_error(path, line.number, "not IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME: " + in_quotes(line.text));
     if (!ids.insert(image->id).second) return line_error(path, line.number, "image " + std::to_string(image->id) + " a second time");
     if (!camera_ids.contains(image->camera_id)) {
-      return line_error(path, line.number, in_quotes(image->name) + " was taken by camera " + std::to_string(image->camera_id) + ", which cameras.txt does not have");
+      return line_error(
+          path, line.number,
+          in_quotes(image->name) + " was taken by camera " + std::to_string(image->camera_id) + ", which cameras.txt does not have");
     }
     TextLine keypoints;
     if (lines.next(&keypoints)) {
@@ -188,7 +192,8 @@ Status read_images(const std::string& path, std::string_view text, const PointIn
 Status check_folder(const std::string& folder) {
   std::error_code ignored;
   const std::filesystem::path path(folder);
-  if (!std::filesystem::is_directory(path, ignored)) return {ErrorCode::kNotFound, folder + ": no such folder; give the folder of a COLMAP model"};
+  if (!std::filesystem::is_directory(path, ignored))
+    return {ErrorCode::kNotFound, folder + ": no such folder; give the folder of a COLMAP model"};
   if (!std::filesystem::exists(path / "images.txt", ignored) && std::filesystem::exists(path / "images.bin", ignored)) {
     return {ErrorCode::kNotFound, folder + ": is a binary COLMAP model; convert it with 'colmap model_converter --input_path " + folder +
                                       " --output_path TEXT_DIR --output_type TXT'"};

@@ -53,8 +53,10 @@ Result<ModelScale> estimate_model_scale(std::span<const DepthPair> pairs, const 
   for (auto& [image, values] : logs_of_image) {
     if (values.size() >= options.min_pairs_per_image) image_medians.push_back(median(std::move(values)));
   }
-  const std::string found = std::to_string(logs.size()) + " points with measured depth in " + std::to_string(image_medians.size()) + " images";
-  if (logs.size() < std::max<std::uint64_t>(options.min_pairs, 1) || image_medians.size() < std::max<std::uint64_t>(options.min_images, 1)) {
+  const std::string found =
+      std::to_string(logs.size()) + " points with measured depth in " + std::to_string(image_medians.size()) + " images";
+  if (logs.size() < std::max<std::uint64_t>(options.min_pairs, 1) ||
+      image_medians.size() < std::max<std::uint64_t>(options.min_images, 1)) {
     return {ErrorCode::kInvalid, "the scale of the model cannot be told from " + found + "; at least " + std::to_string(options.min_pairs) +
                                      " in " + std::to_string(options.min_images) + " are needed"};
   }
@@ -66,12 +68,14 @@ Result<ModelScale> estimate_model_scale(std::span<const DepthPair> pairs, const 
   scale.num_pairs = logs.size();
   scale.num_images = image_medians.size();
   if (scale.spread > options.max_spread) {
-    return {ErrorCode::kInvalid, "the scale of the model cannot be told: measured / model depth scatters by " + percent(scale.spread) + " (at most " +
-                                     percent(options.max_spread) + ") over " + found + "; does it belong to this recording and camera?"};
+    return {ErrorCode::kInvalid, "the scale of the model cannot be told: measured / model depth scatters by " + percent(scale.spread) +
+                                     " (at most " + percent(options.max_spread) + ") over " + found +
+                                     "; does it belong to this recording and camera?"};
   }
   if (scale.image_spread > options.max_image_spread) {
-    return {ErrorCode::kInvalid, "the scale of the model drifts by " + percent(scale.image_spread) + " (at most " + percent(options.max_image_spread) +
-                                     ") between images, over " + found + "; check the model for parts that do not fit together"};
+    return {ErrorCode::kInvalid, "the scale of the model drifts by " + percent(scale.image_spread) + " (at most " +
+                                     percent(options.max_image_spread) + ") between images, over " + found +
+                                     "; check the model for parts that do not fit together"};
   }
   return scale;
 }

@@ -23,8 +23,8 @@ struct DepthPair {
 
 struct ModelScale {
   double metres_per_unit = 1;
-  double spread = 0;            ///< of single ratios, one robust standard deviation, relative
-  double image_spread = 0;      ///< the same of the images' medians: drift of scale within the model
+  double spread = 0;        ///< of single ratios, one robust standard deviation, relative
+  double image_spread = 0;  ///< the same of the images' medians: drift of scale within the model
   std::uint64_t num_pairs = 0, num_images = 0;
 };
 
@@ -32,7 +32,7 @@ struct ModelScaleOptions {
   std::uint64_t min_pairs = 50;
   std::uint64_t min_images = 2;
   std::uint64_t min_pairs_per_image = 5;  ///< an image's median needs that many
-  double max_spread = 0.15;     ///< points of a structure-from-motion model scatter 1-5 % at room distances
+  double max_spread = 0.15;               ///< points of a structure-from-motion model scatter 1-5 % at room distances
   double max_image_spread = 0.05;
 };
 

@@ -44,7 +44,8 @@ std::vector<Rgb> landmark_colors(const MapView& map, const std::vector<Eigen::Ve
 }
 
 std::string printable(std::string text) {
-  std::replace_if(text.begin(), text.end(), [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }, '?');
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }, '?');
   return text;
 }
 
@@ -117,8 +118,10 @@ std::string format_ply(const MapView& map, const ExportOptions& options) {
     const Eigen::Vector3d position = T_out * positions[i];
     const Eigen::Vector3d direction = T_out.rotation * MapView::direction(landmark).cast<double>();
     for (const double value : position) {
-      if (options.use_wcs) append_bits(std::bit_cast<std::uint64_t>(value), &bytes);
-      else append_float(value, &bytes);
+      if (options.use_wcs)
+        append_bits(std::bit_cast<std::uint64_t>(value), &bytes);
+      else
+        append_float(value, &bytes);
     }
     for (const double value : direction) append_float(value, &bytes);
     for (const std::uint8_t value : colors[i]) append_bits(value, &bytes);
@@ -143,7 +146,8 @@ ColmapModel make_colmap_model(const MapView& map, const ExportOptions& options) 
 std::string format_tum(const MapView& map, const ExportOptions& options) {
   constexpr std::int64_t kNsPerKeyframe = 1'000'000'000;
   const Rigid3 T_out = T_out_map(map, options);
-  std::string text = "# " + describe_export(map, options) + "\n# timestamp tx ty tz qx qy qz qw of the colour camera; a map keeps no stamps: timestamp = index of the keyframe\n";
+  std::string text = "# " + describe_export(map, options) +
+                     "\n# timestamp tx ty tz qx qy qz qw of the colour camera; a map keeps no stamps: timestamp = index of the keyframe\n";
   for (std::uint32_t k = 0; k < map.keyframes().size(); ++k) {
     text += format_tum_line(kNsPerKeyframe * k, T_out * map.keyframe_pose(k)) + "\n";
   }

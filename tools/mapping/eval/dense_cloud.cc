@@ -57,8 +57,7 @@ Result<PointCloud> fuse_dense_cloud(const PosedFrames& frames, const RgbdCamera&
   };
   if (const auto counts = tools::read_frames(*source.value(), add); !counts) return counts.status();
   PointCloud cloud = accumulator.finish();
-  if (cloud.points_m.empty())
-    return {ErrorCode::kInvalid, frames.folder + ": its frames give no surface; check depth images and --camera"};
+  if (cloud.points_m.empty()) return {ErrorCode::kInvalid, frames.folder + ": its frames give no surface; check depth images and --camera"};
   return cloud;
 }
 

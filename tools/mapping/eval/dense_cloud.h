@@ -28,8 +28,8 @@ using FrameProgress = std::function<bool(std::uint64_t done, std::uint64_t total
 
 /// Depth pixels at depth edges are left out. Points are in the frame of the poses. Errors: of opening the recording; kInvalid
 /// when no depth is left; kIo when stopped. Broken frames are skipped.
-[[nodiscard]] Result<PointCloud> fuse_dense_cloud(const PosedFrames& frames, const RgbdCamera& camera,
-                                                  const DenseCloudOptions& options, const FrameProgress& progress = {});
+[[nodiscard]] Result<PointCloud> fuse_dense_cloud(const PosedFrames& frames, const RgbdCamera& camera, const DenseCloudOptions& options,
+                                                  const FrameProgress& progress = {});
 
 /// The points of one depth image in the frame of T_world_camera (the colour camera's pose).
 void add_depth_image(const RgbdCamera& camera, ImageView<std::uint16_t> depth, const Rigid3& T_world_camera,

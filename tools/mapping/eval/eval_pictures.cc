@@ -12,8 +12,8 @@
 namespace camloc::map_tool {
 namespace {
 
-constexpr Rgb kPaper{252, 252, 250}, kInk{40, 40, 46}, kGrid{222, 222, 218}, kBar{70, 120, 170}, kMean{200, 80, 30},
-    kMedian{20, 20, 24}, kP95{130, 60, 150};
+constexpr Rgb kPaper{252, 252, 250}, kInk{40, 40, 46}, kGrid{222, 222, 218}, kBar{70, 120, 170}, kMean{200, 80, 30}, kMedian{20, 20, 24},
+    kP95{130, 60, 150};
 constexpr Rgb kNight{18, 19, 22}, kLight{228, 228, 232}, kCamera{255, 255, 255}, kOutside{215, 95, 175};
 constexpr int kWidth = 1400, kMinHeight = 360, kMaxHeight = 1400, kMargin = 50, kHeader = 75, kFooter = 45;
 constexpr double kNearCosine = 0.866;  // 30 degrees
@@ -97,8 +97,7 @@ void add_keyframes(const Evaluation& evaluation, const Viewpoint& viewpoint, Poi
   std::vector<Eigen::Vector2d> drawn;
   for (const Rigid3& T : evaluation.T_cloud_keyframe) {
     const Eigen::Vector2d pixel = viewpoint.px_per_m * (viewpoint.T_view_world * T.translation).head<2>();
-    if (std::any_of(drawn.begin(), drawn.end(),
-                    [&](const Eigen::Vector2d& other) { return (other - pixel).norm() < kSpacingPx; }))
+    if (std::any_of(drawn.begin(), drawn.end(), [&](const Eigen::Vector2d& other) { return (other - pixel).norm() < kSpacingPx; }))
       continue;
     drawn.push_back(pixel);
     raster->add_camera(viewpoint, T, std::max(0.1, 12 / viewpoint.px_per_m), kCamera);
@@ -131,8 +130,7 @@ ColorImage draw_histogram(const CloudDistances& distances, const std::string& ti
   PointRaster raster(kWidthPx, kTop + kPlotHeight + 80, kPaper);
   std::vector<std::size_t> bins(kBins + 1);
   for (const float distance : distances.point_m) {
-    ++bins[static_cast<std::size_t>(
-        std::clamp(static_cast<double>(distance) / kFullScaleM * kBins, 0.0, static_cast<double>(kBins)))];
+    ++bins[static_cast<std::size_t>(std::clamp(static_cast<double>(distance) / kFullScaleM * kBins, 0.0, static_cast<double>(kBins)))];
   }
   const double total = std::max<double>(1, static_cast<double>(distances.point_m.size()));
   const double highest = std::max(0.01, static_cast<double>(*std::max_element(bins.begin(), bins.end())) / total);
@@ -154,8 +152,7 @@ ColorImage draw_histogram(const CloudDistances& distances, const std::string& ti
   raster.add_rectangle(kLeft, base, (kBins + 4) * kBinPx, 2, kInk);
   for (int cm = 0; cm <= 10; ++cm) raster.add_text(kLeft + 4 * cm * kBinPx - 5, base + 22, std::to_string(cm), 11, kInk);
   raster.add_text(kLeft + (kBins + 2) * kBinPx - 8, base + 22, "more", 11, kInk);
-  raster.add_text(kLeft + kBins * kBinPx / 2 - 170, base + 52, "distance from landmark to nearest point of the cloud [cm]", 12,
-                  kInk);
+  raster.add_text(kLeft + kBins * kBinPx / 2 - 170, base + 52, "distance from landmark to nearest point of the cloud [cm]", 12, kInk);
   raster.add_text(kLeft, 32, title, 15, kInk);
   constexpr int kKeyU = kLeft + 30 * kBinPx;
   int row = kTop + 22;

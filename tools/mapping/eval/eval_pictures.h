@@ -21,7 +21,6 @@ namespace camloc::map_tool {
 /// above, where what is over the cameras' heads is cut off as in a floor plan, or from the side. Up is where the cameras' up is
 /// on average, corrected to what is within 30 degrees: the cloud's z axis, or else a direction across walls and floors.
 enum class CloudView { kTop, kSide };
-[[nodiscard]] ColorImage draw_cloud_view(const Evaluation& evaluation, const PointCloud& cloud, CloudView view,
-                                         const std::string& title);
+[[nodiscard]] ColorImage draw_cloud_view(const Evaluation& evaluation, const PointCloud& cloud, CloudView view, const std::string& title);
 
 }  // namespace camloc::map_tool

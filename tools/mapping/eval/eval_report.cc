@@ -23,10 +23,10 @@ void append_inputs(const EvalSummary& s, std::string* text) {
   const Evaluation& e = s.evaluation;
   append_text(text, "%-22s%s\n", "map", s.map_path.c_str());
   append_text(text, "%-22s%llu of %llu with at least %u observations, %llu keyframes\n", "landmarks", count(e.num_used),
-         count(e.num_landmarks), s.min_observations, count(e.num_keyframes));
+              count(e.num_landmarks), s.min_observations, count(e.num_keyframes));
   append_text(text, "%-22s%s\n", "cloud", s.cloud_name.c_str());
-  append_text(text, "%-22s%llu read, %llu of them invalid, %llu kept (voxel %.3g m)\n", "points", count(s.num_read),
-         count(s.num_invalid), count(s.num_points), s.voxel_m);
+  append_text(text, "%-22s%llu read, %llu of them invalid, %llu kept (voxel %.3g m)\n", "points", count(s.num_read), count(s.num_invalid),
+              count(s.num_points), s.voxel_m);
 }
 
 void append_alignment(const EvalSummary& s, std::string* text) {
@@ -34,14 +34,13 @@ void append_alignment(const EvalSummary& s, std::string* text) {
   append_text(text, "%-22s%s", "start", describe(e.start));
   if (e.search)
     append_text(text, ": %s, landmarks %.1f cm off (next best place %.1f cm)",
-           e.search->is_identity ? "the map's own frame" : "walls on walls", 100 * e.search->score_m,
-           100 * e.search->rival_score_m);
+                e.search->is_identity ? "the map's own frame" : "walls on walls", 100 * e.search->score_m, 100 * e.search->rival_score_m);
   append_text(text, "\n");
   if (e.registration) {
     const Registration& r = *e.registration;
-    append_text(text, "%-22smoved by %.3f m, %.2f deg in %d iterations%s; %llu of %llu landmarks used, %.1f mm RMS to the surface\n",
-           "ICP", e.moved_m, degrees(e.moved_rad), r.num_iterations, r.is_converged ? "" : " (not converged)",
-           count(r.num_correspondences), count(r.num_points), 1000 * r.rms_m);
+    append_text(text, "%-22smoved by %.3f m, %.2f deg in %d iterations%s; %llu of %llu landmarks used, %.1f mm RMS to the surface\n", "ICP",
+                e.moved_m, degrees(e.moved_rad), r.num_iterations, r.is_converged ? "" : " (not converged)", count(r.num_correspondences),
+                count(r.num_points), 1000 * r.rms_m);
   } else {
     append_text(text, "%-22snone\n", "ICP");
   }
@@ -55,8 +54,8 @@ void append_points(const Evaluation& e, std::string* text) {
 }
 
 void append_row(const char* name, const DistanceStatistics& d, std::string* text) {
-  append_text(text, "  %-26s%9llu%8.2f%8.2f%8.2f%8.2f%8.1f%8.1f\n", name, count(d.count), 100 * d.mean_m, 100 * d.median_m,
-         100 * d.rms_m, 100 * d.p95_m, 100 * d.share_3cm, 100 * d.share_5cm);
+  append_text(text, "  %-26s%9llu%8.2f%8.2f%8.2f%8.2f%8.1f%8.1f\n", name, count(d.count), 100 * d.mean_m, 100 * d.median_m, 100 * d.rms_m,
+              100 * d.p95_m, 100 * d.share_3cm, 100 * d.share_5cm);
 }
 
 void append_distances(const EvalSummary& s, std::string* text) {
@@ -67,20 +66,19 @@ void append_distances(const EvalSummary& s, std::string* text) {
   append_row("all landmarks to point", d.all, text);
   append_row("cloud cell to landmark", d.cells, text);
   append_text(text, "\n%-22s%llu of %llu landmarks (%.1f %%) are farther than %.2g m from the cloud\n", "outside the scan",
-         count(d.num_outside), count(s.evaluation.num_used), percent(d.num_outside, s.evaluation.num_used),
-         s.evaluation.max_distance_m);
+              count(d.num_outside), count(s.evaluation.num_used), percent(d.num_outside, s.evaluation.num_used),
+              s.evaluation.max_distance_m);
   append_text(text, "%-22s%.1f %% of %llu cells of the cloud near the keyframes have a landmark within 0.25 m\n", "coverage",
-         percent(d.num_covered, d.num_cells), count(d.num_cells));
+              percent(d.num_covered, d.num_cells), count(d.num_cells));
 }
 
 void append_scale(const Evaluation& e, std::string* text) {
   if (e.scale) append_text(text, "%-22s%.4f by ICP (expected 1 +- 0.01)\n", "scale", *e.scale);
-  if (e.points_scale)
-    append_text(text, "%-22s%.4f by the control points (1 +- %.2f)\n", "", *e.points_scale, e.points_scale_tolerance);
+  if (e.points_scale) append_text(text, "%-22s%.4f by the control points (1 +- %.2f)\n", "", *e.points_scale, e.points_scale_tolerance);
   if (e.poses_scale) append_text(text, "%-22s%.4f by the camera positions (1 +- %.2f)\n", "", *e.poses_scale, e.poses_scale_tolerance);
   const Eigen::Vector3d &m = e.distances.map_extent_m, &c = e.distances.cloud_extent_m;
-  append_text(text, "%-22smap %.1f x %.1f x %.1f m, cloud %.1f x %.1f x %.1f m, volumes %.3g : 1\n", "boxes", m.x(), m.y(), m.z(),
-         c.x(), c.y(), c.z(), e.distances.volume_ratio());
+  append_text(text, "%-22smap %.1f x %.1f x %.1f m, cloud %.1f x %.1f x %.1f m, volumes %.3g : 1\n", "boxes", m.x(), m.y(), m.z(), c.x(),
+              c.y(), c.z(), e.distances.volume_ratio());
 }
 
 Json to_json(const DistanceStatistics& d) {

@@ -27,8 +27,8 @@ void warn_about_scale(const Evaluation& e, std::vector<std::string>* warnings) {
   warn(e.poses_scale, e.poses_scale_tolerance, "the camera positions");
   if (const double ratio = e.distances.volume_ratio(); ratio < 0.2 || ratio > 5) {
     warnings->push_back(
-        text_of("VOLUME: the map's box is %.3g times the cloud's; either %s, or its scale is wrong. Control points would tell",
-                ratio, ratio < 1 ? "it holds a small part of the scan" : "the scan holds a small part of the map"));
+        text_of("VOLUME: the map's box is %.3g times the cloud's; either %s, or its scale is wrong. Control points would tell", ratio,
+                ratio < 1 ? "it holds a small part of the scan" : "the scan holds a small part of the map"));
   }
 }
 
@@ -39,8 +39,7 @@ void warn_about_points(const Evaluation& e, std::vector<std::string>* warnings) 
   const auto worst = std::max_element(sizes.begin(), sizes.end());
   const PointResidual& r = e.residuals[static_cast<std::size_t>(worst - sizes.begin())];
   if (*worst > std::max(0.05, 5 * r.sigma_m)) {
-    warnings->push_back(
-        text_of("POINTS: control point %s is off by %.3f m; check it for a typo or swapped axes", r.name.c_str(), *worst));
+    warnings->push_back(text_of("POINTS: control point %s is off by %.3f m; check it for a typo or swapped axes", r.name.c_str(), *worst));
   }
 }
 
@@ -51,24 +50,21 @@ void warn_about_alignment(const Evaluation& e, std::vector<std::string>* warning
                 "points to be sure",
                 e.search->score_m, e.search->rival_score_m));
   }
-  const double share_outside =
-      static_cast<double>(e.distances.num_outside) / static_cast<double>(std::max<std::uint64_t>(1, e.num_used));
+  const double share_outside = static_cast<double>(e.distances.num_outside) / static_cast<double>(std::max<std::uint64_t>(1, e.num_used));
   if (share_outside > 0.2) {
-    warnings->push_back(text_of(
-        "OVERLAP: %.0f %% of the landmarks have no point of the cloud near; the alignment is wrong, or the scan lacks rooms",
-        100 * share_outside));
+    warnings->push_back(
+        text_of("OVERLAP: %.0f %% of the landmarks have no point of the cloud near; the alignment is wrong, or the scan lacks rooms",
+                100 * share_outside));
   }
   if (!e.registration) return;
   if (e.start == AlignStart::kPoints && e.moved_m > 0.1) {
-    warnings->push_back(
-        text_of("POINTS: the surfaces put the map %.2f m away from where the control points put it; which of the two is wrong?",
-                e.moved_m));
+    warnings->push_back(text_of(
+        "POINTS: the surfaces put the map %.2f m away from where the control points put it; which of the two is wrong?", e.moved_m));
   }
   if (e.registration->weakest_share < 0.01) {
     const Eigen::Vector3d& d = e.registration->weakest_direction;
-    warnings->push_back(
-        text_of("SLIDING: nearly no surface stands across (%.2f, %.2f, %.2f); the map may slide along there unnoticed", d.x(),
-                d.y(), d.z()));
+    warnings->push_back(text_of("SLIDING: nearly no surface stands across (%.2f, %.2f, %.2f); the map may slide along there unnoticed",
+                                d.x(), d.y(), d.z()));
   }
   if (!e.registration->is_converged) warnings->push_back("ICP: did not settle; the distances may improve with another start");
 }

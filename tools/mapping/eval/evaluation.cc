@@ -57,10 +57,9 @@ Status check_unit(const MapPoints& points, const PointCloud& cloud) {
   const auto bounds = cloud.bounds_m();
   const double cloud_m = (bounds[1] - bounds[0]).norm(), map_m = extent_of(points.landmarks).norm();
   if (!(cloud_m > 300 * map_m && cloud_m < 5000 * map_m && cloud_m > 1000)) return Status::ok();
-  return {
-      ErrorCode::kInvalid,
-      text_of("the cloud is %.0f m wide and the map %.1f m: the cloud seems to be in millimetres; say so with --lidar-unit mm",
-              cloud_m, map_m)};
+  return {ErrorCode::kInvalid,
+          text_of("the cloud is %.0f m wide and the map %.1f m: the cloud seems to be in millimetres; say so with --lidar-unit mm", cloud_m,
+                  map_m)};
 }
 
 std::vector<PointPair> pairs_of(const std::vector<ControlPair>& controls, const Eigen::Vector3d& origin_m) {
@@ -83,8 +82,7 @@ std::vector<PointPair> pairs_of(const std::vector<PosePair>& poses, const Eigen:
 Result<Rigid3> align(const std::vector<PointPair>& pairs, const char* what) {
   const Alignment aligned = align_rigid(pairs);
   if (aligned.rank == AlignmentRank::kFull) return aligned.T_a_b;
-  return {ErrorCode::kInvalid,
-          std::string(what) + ": all lie on one line, which leaves the rotation about it open; add one aside"};
+  return {ErrorCode::kInvalid, std::string(what) + ": all lie on one line, which leaves the rotation about it open; add one aside"};
 }
 
 AlignStart choose_start(const EvaluationInput& input, AlignStart wish) {
@@ -100,8 +98,8 @@ bool is_same_place(const Rigid3& a, const Rigid3& b, const std::vector<Eigen::Ve
 }
 
 /// Every coarse start is refined; what fits best wins.
-Result<Rigid3> search_start(const EvaluationInput& input, const MapPoints& points, const EvaluationOptions& options,
-                            CloudIndex* cloud, SearchOutcome* outcome) {
+Result<Rigid3> search_start(const EvaluationInput& input, const MapPoints& points, const EvaluationOptions& options, CloudIndex* cloud,
+                            SearchOutcome* outcome) {
   const auto starts = find_coarse_starts(points.landmarks, input.cloud->points_m, input.cloud->origin_m);
   if (!starts.is_ok()) return starts.status();
   RegistrationOptions registration;
@@ -124,20 +122,18 @@ Result<Rigid3> search_start(const EvaluationInput& input, const MapPoints& point
             "no place was found where the map fits into the cloud; is it the same site? Control points (--points) would help"};
   // A map that fits in its own frame is meant to be there.
   const auto handicapped_m = [](const CoarseStart& start) { return start.score_m * (start.is_identity ? 0.9 : 1); };
-  const CoarseStart best = *std::min_element(refined.begin(), refined.end(), [&](const CoarseStart& a, const CoarseStart& b) {
-    return handicapped_m(a) < handicapped_m(b);
-  });
+  const CoarseStart best = *std::min_element(
+      refined.begin(), refined.end(), [&](const CoarseStart& a, const CoarseStart& b) { return handicapped_m(a) < handicapped_m(b); });
   *outcome = {best.score_m, options.max_distance_m, best.is_identity, starts.value().size()};
   for (const CoarseStart& other : refined) {
-    if (!is_same_place(other.T_cloud_map, best.T_cloud_map, some))
-      outcome->rival_score_m = std::min(outcome->rival_score_m, other.score_m);
+    if (!is_same_place(other.T_cloud_map, best.T_cloud_map, some)) outcome->rival_score_m = std::min(outcome->rival_score_m, other.score_m);
   }
   return best.is_identity ? Rigid3{Eigen::Quaterniond::Identity(), -input.cloud->origin_m} : best.T_cloud_map;
 }
 
 /// T_cloud_map relative to the cloud's origin.
-Result<Rigid3> find_start(const EvaluationInput& input, const MapPoints& points, const EvaluationOptions& options,
-                          CloudIndex* cloud, Evaluation* result) {
+Result<Rigid3> find_start(const EvaluationInput& input, const MapPoints& points, const EvaluationOptions& options, CloudIndex* cloud,
+                          Evaluation* result) {
   const Eigen::Vector3d& origin_m = input.cloud->origin_m;
   const auto relative = [&](Rigid3 T) {
     T.translation -= origin_m;
@@ -157,8 +153,7 @@ Result<Rigid3> find_start(const EvaluationInput& input, const MapPoints& points,
     }
     case AlignStart::kDatum:
       if (!input.map->info().wcs)
-        return {ErrorCode::kInvalid,
-                "--align datum: " + input.map->info().path + " has no datum; camloc map georef gives it one"};
+        return {ErrorCode::kInvalid, "--align datum: " + input.map->info().path + " has no datum; camloc map georef gives it one"};
       return relative(input.map->info().wcs->T_wcs_map);
     case AlignStart::kAuto:
     case AlignStart::kSearch: {
@@ -199,8 +194,8 @@ double spread_of(const std::vector<PointPair>& pairs) {
   return std::sqrt(sum);
 }
 
-void check_scale(const EvaluationInput& input, const MapPoints& points, const Rigid3& T_cloud_map,
-                 const EvaluationOptions& options, CloudIndex* cloud, Evaluation* result) {
+void check_scale(const EvaluationInput& input, const MapPoints& points, const Rigid3& T_cloud_map, const EvaluationOptions& options,
+                 CloudIndex* cloud, Evaluation* result) {
   RegistrationOptions registration;
   registration.has_scale = true;
   registration.trim = options.trim;

@@ -19,14 +19,15 @@ constexpr int kMarginPx = 24, kHeaderPx = 58, kPanelMarginPx = 46, kListHeightPx
 constexpr double kWedgePx = 15, kWedgeHalfAngle = 0.42;
 constexpr double kCameraPx = 13;
 constexpr std::size_t kManyLandmarks = 60000;
-constexpr double kBareWalkM = 1.0;  // from the nearest keyframe
+constexpr double kBareWalkM = 1.0;          // from the nearest keyframe
 constexpr double kMaxTrajectoryGapM = 1.0;  // a line across a gap would show a walk that nobody made
 
 void blit(const ColorImage& from, int u, int v, ColorImage* to) {
   for (int y = 0; y < from.height && v + y < to->height; ++y) {
     const auto row_bytes = 3 * static_cast<std::size_t>(std::max(0, std::min(from.width, to->width - u)));
-    std::memcpy(to->pixels.data() + 3 * (static_cast<std::size_t>(v + y) * static_cast<std::size_t>(to->width) + static_cast<std::size_t>(u)),
-                from.pixels.data() + 3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(from.width), row_bytes);
+    std::memcpy(
+        to->pixels.data() + 3 * (static_cast<std::size_t>(v + y) * static_cast<std::size_t>(to->width) + static_cast<std::size_t>(u)),
+        from.pixels.data() + 3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(from.width), row_bytes);
   }
 }
 
@@ -61,7 +62,8 @@ void draw_walk(const Scene& scene, const Viewpoint& view, double line_px, PointR
 
 Eigen::Vector2d pixel_of(const Viewpoint& view, const Eigen::Vector3d& p) {
   const Eigen::Vector3d p_view = view.T_view_world * p;
-  return Eigen::Vector2d(view.center_u, view.center_v) + p_view.head<2>() * (view.is_perspective ? view.px_per_m / p_view.z() : view.px_per_m);
+  return Eigen::Vector2d(view.center_u, view.center_v) +
+         p_view.head<2>() * (view.is_perspective ? view.px_per_m / p_view.z() : view.px_per_m);
 }
 
 /// Keyframes as small pyramids, as many as keep apart in the picture.
@@ -81,7 +83,8 @@ ColorImage draw_top(const Scene& scene, const Plan& plan, int width, int height)
   raster.add_points(view, scene.landmarks, scene.colors, 1.0);
   draw_walk(scene, view, 2, &raster);
   draw_cameras(scene, view, kCameraPx / view.px_per_m, &raster);
-  draw_frame(&raster, width, height, scene.is_cut ? "From above, cut 0.6 m above the cameras; triangles are keyframes" : "From above; triangles are keyframes");
+  draw_frame(&raster, width, height,
+             scene.is_cut ? "From above, cut 0.6 m above the cameras; triangles are keyframes" : "From above; triangles are keyframes");
   raster.add_rectangle(2, height - 34, width / 5 + 90, 32, kBackground);
   raster.add_scale_bar(view, 14, height - 18, kInk);
   draw_height_legend(scene, &raster, width, height);
@@ -139,7 +142,8 @@ void draw_wedges(const Scene& scene, const Viewpoint& view, FixOutlook outlook, 
 }
 
 bool is_bare(const Scene& scene, const Eigen::Vector3d& position) {
-  return std::none_of(scene.keyframes.begin(), scene.keyframes.end(), [&](const Eigen::Vector3d& p) { return (p - position).norm() < kBareWalkM; });
+  return std::none_of(scene.keyframes.begin(), scene.keyframes.end(),
+                      [&](const Eigen::Vector3d& p) { return (p - position).norm() < kBareWalkM; });
 }
 
 /// What was walked without a keyframe near: there was too little to see.
@@ -162,11 +166,13 @@ void draw_numbers(const Scene& scene, const Viewpoint& view, PointRaster* raster
     const auto collides = [&](const Eigen::Vector2d& other) { return (other - at).norm() < 22; };
     for (int tries = 0; tries < 20 && std::any_of(taken.begin(), taken.end(), collides); ++tries) at += 12 * direction;
     taken.push_back(at);
-    const Eigen::Vector3d world = view.T_view_world.inverse() * Eigen::Vector3d((at.x() - view.center_u) / view.px_per_m, (at.y() - view.center_v) / view.px_per_m, 0);
+    const Eigen::Vector3d world = view.T_view_world.inverse() *
+                                  Eigen::Vector3d((at.x() - view.center_u) / view.px_per_m, (at.y() - view.center_v) / view.px_per_m, 0);
     const Eigen::Vector3d above = world + scene.up * (1000 - scene.up.dot(world));
     raster->add_points(view, std::span(&above, 1), kInk, 10);
     const std::string number = std::to_string(i + 1);
-    raster->add_text(static_cast<int>(at.x()) - PointRaster::text_width(number, kSmallPx) / 2, static_cast<int>(at.y()) + 5, number, kSmallPx, kBackground);
+    raster->add_text(static_cast<int>(at.x()) - PointRaster::text_width(number, kSmallPx) / 2, static_cast<int>(at.y()) + 5, number,
+                     kSmallPx, kBackground);
   }
 }
 
@@ -174,7 +180,8 @@ ColorImage draw_coverage(const Scene& scene, const Plan& plan, int width, int he
   PointRaster raster(width, height, kBackground);
   const Viewpoint view = top_view(plan, width, height, kPanelMarginPx);
   raster.add_points(view, scene.landmarks, kLandmark, scene.landmarks.size() < kManyLandmarks ? 1.0 : 0.5);
-  for (const FixOutlook outlook : {FixOutlook::kLikely, FixOutlook::kLookAlike, FixOutlook::kScanAgain}) draw_wedges(scene, view, outlook, &raster);
+  for (const FixOutlook outlook : {FixOutlook::kLikely, FixOutlook::kLookAlike, FixOutlook::kScanAgain})
+    draw_wedges(scene, view, outlook, &raster);
   draw_walk(scene, view, 1, &raster);
   draw_bare_walk(scene, view, &raster);
   draw_numbers(scene, view, &raster);
@@ -191,8 +198,10 @@ std::vector<std::string> wrapped(const std::string& text, int width, double heig
     const std::size_t end = std::min(text.find(' ', begin), text.size());
     const std::string word = text.substr(begin, end - begin);
     const std::string longer = lines.back().empty() ? word : lines.back() + " " + word;
-    if (!lines.back().empty() && PointRaster::text_width(longer, height_px) > width) lines.push_back(word);
-    else lines.back() = longer;
+    if (!lines.back().empty() && PointRaster::text_width(longer, height_px) > width)
+      lines.push_back(word);
+    else
+      lines.back() = longer;
     begin = end + 1;
   }
   return lines;
@@ -201,9 +210,11 @@ std::vector<std::string> wrapped(const std::string& text, int width, double heig
 void draw_shares(const Scene& scene, PointRaster* raster, int* v) {
   const auto& places = scene.picture->places;
   for (const FixOutlook outlook : {FixOutlook::kLikely, FixOutlook::kLookAlike, FixOutlook::kScanAgain}) {
-    const auto count = std::count_if(places.begin(), places.end(), [&](const KeyframeLocalizability& place) { return place.outlook == outlook; });
+    const auto count =
+        std::count_if(places.begin(), places.end(), [&](const KeyframeLocalizability& place) { return place.outlook == outlook; });
     char share[32];
-    std::snprintf(share, sizeof share, "%.1f %%", 100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, places.size())));
+    std::snprintf(share, sizeof share, "%.1f %%",
+                  100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, places.size())));
     raster->add_rectangle(12, *v - 12, 16, 14, color_of(outlook));
     raster->add_text(38, *v, words_for(outlook), kTextPx, kInk);
     raster->add_text(330 - PointRaster::text_width(share, kTextPx), *v, share, kTextPx, kInk);
@@ -238,7 +249,8 @@ ColorImage draw_list(const Scene& scene, int width, int height) {
     if (v + 17 * static_cast<int>(lines.size()) > height - 8) break;
     raster.add_rectangle(12, v - 12, 20, 16, color_of(weak.outlook));
     const std::string number = std::to_string(i + 1);
-    raster.add_text(22 - PointRaster::text_width(number, kSmallPx) / 2, v, number, kSmallPx, weak.outlook == FixOutlook::kLookAlike ? kInk : kBackground);
+    raster.add_text(22 - PointRaster::text_width(number, kSmallPx) / 2, v, number, kSmallPx,
+                    weak.outlook == FixOutlook::kLookAlike ? kInk : kBackground);
     raster.add_text(40, v, head, kSmallPx, kInk);
     for (const std::string& line : lines) raster.add_text(40, v += 17, line, kSmallPx, kSoftInk);
     v += 25;
@@ -292,7 +304,8 @@ ColorImage draw_panels(const Scene& scene, MapPanel panel, int width) {
 
 std::string title_of(const MapInfo& info) {
   std::string name = info.name.empty() ? info.path : info.name;
-  std::replace_if(name.begin(), name.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
   return name + ":  " + std::to_string(info.num_landmarks) + " landmarks, " + std::to_string(info.num_keyframes) + " keyframes, " +
          std::to_string(info.file_bytes / 1000) + " kB" + (info.wcs ? ", in site coordinates" : "");
 }

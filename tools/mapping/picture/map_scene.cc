@@ -38,7 +38,8 @@ double wall_score(const Scene& scene, const Eigen::Vector3d& axis) {
   constexpr std::size_t kMaxSamples = 20000;
   std::map<long, double> bins;
   const std::size_t step = scene.landmarks.size() / kMaxSamples + 1;
-  for (std::size_t i = 0; i < scene.landmarks.size(); i += step) ++bins[std::lround(std::clamp(axis.dot(scene.landmarks[i]) / kBinM, -1e9, 1e9))];
+  for (std::size_t i = 0; i < scene.landmarks.size(); i += step)
+    ++bins[std::lround(std::clamp(axis.dot(scene.landmarks[i]) / kBinM, -1e9, 1e9))];
   double score = 0;
   for (const auto& [bin, count] : bins) score += count * count;
   return score;
@@ -78,7 +79,8 @@ Scene make_scene(const MapPicture& picture) {
 Plan make_plan(const Scene& scene) {
   Eigen::Index flattest = 0;
   scene.up.cwiseAbs().minCoeff(&flattest);
-  const Eigen::Vector3d first = (Eigen::Vector3d::Unit(flattest) - scene.up * scene.up[flattest]).normalized(), second = scene.up.cross(first);
+  const Eigen::Vector3d first = (Eigen::Vector3d::Unit(flattest) - scene.up * scene.up[flattest]).normalized(),
+                        second = scene.up.cross(first);
   Eigen::Vector3d right = first;
   double best = 0;
   for (int degrees = 0; degrees < 90; ++degrees) {

@@ -20,11 +20,11 @@ inline constexpr double kCutAboveCamerasM = 0.6;  ///< landmarks higher above th
 struct Scene {
   const MapPicture* picture = nullptr;
   Eigen::Vector3d up;
-  std::vector<Eigen::Vector3d> landmarks;         ///< below the cut
-  std::vector<Rgb> colors;                        ///< of the landmarks, by height
-  std::vector<Eigen::Vector3d> keyframes, walk;   ///< positions
-  double low_m = 0, high_m = 0;                   ///< heights at the ends of the ramp
-  bool is_cut = false;                            ///< something was left out above
+  std::vector<Eigen::Vector3d> landmarks;        ///< below the cut
+  std::vector<Rgb> colors;                       ///< of the landmarks, by height
+  std::vector<Eigen::Vector3d> keyframes, walk;  ///< positions
+  double low_m = 0, high_m = 0;                  ///< heights at the ends of the ramp
+  bool is_cut = false;                           ///< something was left out above
 };
 
 [[nodiscard]] Scene make_scene(const MapPicture& picture);
@@ -40,8 +40,8 @@ struct Extent {
 /// From above with the walls along the picture's edges and the longer side to the right. Holds landmarks from the 1st to the 99th
 /// percentile and everything that was walked.
 struct Plan {
-  Eigen::Vector3d right, down;   ///< unit vectors
-  Extent u, v;                   ///< along them, metres
+  Eigen::Vector3d right, down;  ///< unit vectors
+  Extent u, v;                  ///< along them, metres
 };
 
 [[nodiscard]] Plan make_plan(const Scene& scene);

@@ -20,9 +20,7 @@ constexpr int kMaxLinePx = 1 << 14;      // cv::line takes 16.16 fixed point
 
 cv::Mat canvas_of(ColorImage* image) { return {image->height, image->width, CV_8UC3, image->pixels.data()}; }
 
-cv::Scalar scalar(Rgb color) {
-  return {static_cast<double>(color[0]), static_cast<double>(color[1]), static_cast<double>(color[2])};
-}
+cv::Scalar scalar(Rgb color) { return {static_cast<double>(color[0]), static_cast<double>(color[1]), static_cast<double>(color[2])}; }
 
 /// Pixel and distance along the view's axis, or nothing behind the eye.
 std::optional<Eigen::Vector3d> project(const Viewpoint& view, const Eigen::Vector3d& p_view) {
@@ -120,8 +118,7 @@ void PointRaster::add_line(const Viewpoint& view, std::span<const Eigen::Vector3
     if (view.is_perspective) {  // cut at the near plane
       if (from.z() > to.z()) std::swap(from, to);
       if (!(to.z() > kNearM)) continue;
-      if (from.z() <= 1.01 * kNearM)
-        from += (to - from) * std::min(1.0, (1.01 * kNearM - from.z()) / std::max(1e-9, to.z() - from.z()));
+      if (from.z() <= 1.01 * kNearM) from += (to - from) * std::min(1.0, (1.01 * kNearM - from.z()) / std::max(1e-9, to.z() - from.z()));
     }
     const auto a = project(view, from), b = project(view, to);
     if (!a || !b || !is_drawable(*a) || !is_drawable(*b)) continue;
@@ -186,8 +183,7 @@ void PointRaster::add_scale_bar(const Viewpoint& view, int u, int v, Rgb color) 
   add_text(u + length_px + 8, v + static_cast<int>(kTextHeightPx) / 2, label, kTextHeightPx, color);
 }
 
-void PointRaster::add_legend(int u, int v, int width, const std::string& low, const std::string& high,
-                             std::span<const Rgb> ramp) {
+void PointRaster::add_legend(int u, int v, int width, const std::string& low, const std::string& high, std::span<const Rgb> ramp) {
   constexpr int kBarHeightPx = 12, kLabelDropPx = 17;
   if (ramp.empty() || width < 2) return;
   for (int x = 0; x < width; ++x) {
@@ -207,8 +203,8 @@ std::span<const Rgb> value_ramp() {
 }
 
 double lightness_of(Rgb color) {
-  const double y = 0.2126 * to_linear_light(color[0] / 255.0) + 0.7152 * to_linear_light(color[1] / 255.0) +
-                   0.0722 * to_linear_light(color[2] / 255.0);
+  const double y =
+      0.2126 * to_linear_light(color[0] / 255.0) + 0.7152 * to_linear_light(color[1] / 255.0) + 0.0722 * to_linear_light(color[2] / 255.0);
   return y > 216.0 / 24389 ? 116 * std::cbrt(y) - 16 : y * 24389 / 27;
 }
 

@@ -36,8 +36,8 @@ struct Viewpoint {
 [[nodiscard]] Viewpoint fit_side_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width, int height,
                                       int margin_px);
 /// Seen from above and aside in perspective.
-[[nodiscard]] Viewpoint fit_perspective_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width,
-                                             int height, int margin_px);
+[[nodiscard]] Viewpoint fit_perspective_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width, int height,
+                                             int margin_px);
 
 /// A picture with a depth buffer. What falls outside is cut off; coordinates that are not finite draw nothing.
 class PointRaster {

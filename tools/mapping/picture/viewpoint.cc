@@ -83,8 +83,7 @@ Eigen::Vector3d long_side(const std::vector<Eigen::Vector3d>& points, const Eige
 }
 
 /// The view with the given axes (rows: right, down, away) in which the points fill the picture.
-Viewpoint fit_parallel(const std::vector<Eigen::Vector3d>& points, const Eigen::Matrix3d& axes, int width, int height,
-                       int margin_px) {
+Viewpoint fit_parallel(const std::vector<Eigen::Vector3d>& points, const Eigen::Matrix3d& axes, int width, int height, int margin_px) {
   const Range u = range_along(points, axes.row(0)), v = range_along(points, axes.row(1));
   Viewpoint view;
   view.T_view_world.rotation = Eigen::Quaterniond(axes).normalized();
@@ -108,16 +107,14 @@ Viewpoint fit_top_view(std::span<const Eigen::Vector3d> points, const Eigen::Vec
   return fit_parallel(samples, axes_of(long_side(samples, unit_up), -unit_up), width, height, margin_px);
 }
 
-Viewpoint fit_side_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width, int height,
-                        int margin_px) {
+Viewpoint fit_side_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width, int height, int margin_px) {
   const std::vector<Eigen::Vector3d> samples = samples_of(points);
   const Eigen::Vector3d unit_up = up.normalized();
   const Eigen::Vector3d right = long_side(samples, unit_up);
   return fit_parallel(samples, axes_of(right, unit_up.cross(right)), width, height, margin_px);
 }
 
-Viewpoint fit_perspective_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width, int height,
-                               int margin_px) {
+Viewpoint fit_perspective_view(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& up, int width, int height, int margin_px) {
   constexpr double kTilt = 0.7, kTurn = 0.5, kDistances = 1.8;  // radians, radians, radii of the scene
   const std::vector<Eigen::Vector3d> samples = samples_of(points);
   const Eigen::Vector3d unit_up = up.normalized(), right = long_side(samples, unit_up), ahead = unit_up.cross(right);

@@ -47,7 +47,8 @@ std::string format_share(const std::vector<KeyframeLocalizability>& places, FixO
   }
   std::string line = text_of("%-28s%6zu of %zu keyframes %6.1f %%", words_for(outlook), landmarks.size(), places.size(),
                              100.0 * static_cast<double>(landmarks.size()) / static_cast<double>(std::max<std::size_t>(1, places.size())));
-  if (!landmarks.empty()) line += text_of("   median %.0f landmarks, expected sigma %s", upper_median(landmarks), centimetres(upper_median(sigmas)).c_str());
+  if (!landmarks.empty())
+    line += text_of("   median %.0f landmarks, expected sigma %s", upper_median(landmarks), centimetres(upper_median(sigmas)).c_str());
   return line + "\n";
 }
 
@@ -66,15 +67,19 @@ std::vector<WeakPlace> find_weak_places(const MapView& map, const std::vector<Ke
   std::vector<WeakPlace> all;
   for (const FixOutlook outlook : {FixOutlook::kScanAgain, FixOutlook::kLookAlike}) {
     std::vector<std::uint32_t> order;
-    for (std::uint32_t k = 0; k < places.size(); ++k) if (places[k].outlook == outlook) order.push_back(k);
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return severity(places[a]) > severity(places[b]); });
+    for (std::uint32_t k = 0; k < places.size(); ++k)
+      if (places[k].outlook == outlook) order.push_back(k);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return severity(places[a]) > severity(places[b]); });
     std::vector<WeakPlace> found;
     for (const std::uint32_t keyframe : order) {
       const auto same = std::find_if(found.begin(), found.end(), [&](const WeakPlace& place) {
         return is_same_place(map, place.keyframe, keyframe) || is_mirrored(map, places, place.keyframe, keyframe);
       });
-      if (same != found.end()) ++same->num_keyframes;
-      else found.push_back({keyframe, 1, outlook});
+      if (same != found.end())
+        ++same->num_keyframes;
+      else
+        found.push_back({keyframe, 1, outlook});
     }
     found.resize(std::min(found.size(), max_each));
     all.insert(all.end(), found.begin(), found.end());
@@ -85,13 +90,15 @@ std::vector<WeakPlace> find_weak_places(const MapView& map, const std::vector<Ke
 std::string explain(const MapView& map, const KeyframeLocalizability& place) {
   if (place.outlook == FixOutlook::kLookAlike && place.rival) {
     const Eigen::Vector3d there = shown_position(map, place.rival->keyframe);
-    return text_of("%u of %u landmarks also fit the place at (%.1f %.1f %.1f); put up something that tells them apart", place.rival->num_inliers,
-                   place.num_landmarks, there.x(), there.y(), there.z());
+    return text_of("%u of %u landmarks also fit the place at (%.1f %.1f %.1f); put up something that tells them apart",
+                   place.rival->num_inliers, place.num_landmarks, there.x(), there.y(), there.z());
   }
   switch (place.weakness) {
     case FixWeakness::kFewLandmarks: return text_of("only %u landmarks; scan slower, nearer, with more light", place.num_landmarks);
-    case FixWeakness::kPoorSpread: return text_of("landmarks in only %.0f %% of the image; scan from farther back or turned", 100 * place.spread);
-    case FixWeakness::kImprecise: return "expected sigma " + centimetres(place.position_sigma_m) + "; scan from nearer and from several sides";
+    case FixWeakness::kPoorSpread:
+      return text_of("landmarks in only %.0f %% of the image; scan from farther back or turned", 100 * place.spread);
+    case FixWeakness::kImprecise:
+      return "expected sigma " + centimetres(place.position_sigma_m) + "; scan from nearer and from several sides";
     case FixWeakness::kNone: break;
   }
   return "";
@@ -104,10 +111,11 @@ Eigen::Vector3d shown_position(const MapView& map, std::uint32_t keyframe) {
 
 std::string format_places(const MapView& map, const std::vector<KeyframeLocalizability>& places, const std::vector<WeakPlace>& weak) {
   std::string text;
-  for (const FixOutlook outlook : {FixOutlook::kLikely, FixOutlook::kLookAlike, FixOutlook::kScanAgain}) text += format_share(places, outlook);
+  for (const FixOutlook outlook : {FixOutlook::kLikely, FixOutlook::kLookAlike, FixOutlook::kScanAgain})
+    text += format_share(places, outlook);
   if (weak.empty()) return text + "no weak places\n";
-  text += text_of("\nworst places (metres, %s)\n   %9s %9s %9s  %9s  %s\n", map.info().wcs ? "site coordinates" : "coordinates of the map", "x", "y", "z",
-                  "keyframes", "why and what to do");
+  text += text_of("\nworst places (metres, %s)\n   %9s %9s %9s  %9s  %s\n", map.info().wcs ? "site coordinates" : "coordinates of the map",
+                  "x", "y", "z", "keyframes", "why and what to do");
   for (std::size_t i = 0; i < weak.size(); ++i) {
     const Eigen::Vector3d at = shown_position(map, weak[i].keyframe);
     text += text_of("%2zu %9.2f %9.2f %9.2f  %9u  %s: ", i + 1, at.x(), at.y(), at.z(), weak[i].num_keyframes, words_for(weak[i].outlook)) +

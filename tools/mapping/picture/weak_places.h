@@ -25,7 +25,8 @@ struct WeakPlace {
 
 /// The worst first, at most `max_each` of each outlook: places to scan again by expected sigma, look-alike places by the share
 /// of the view that another place explains. Keyframes within 2 m that look within 60 degrees of the same way are one place.
-[[nodiscard]] std::vector<WeakPlace> find_weak_places(const MapView& map, const std::vector<KeyframeLocalizability>& places, std::size_t max_each);
+[[nodiscard]] std::vector<WeakPlace> find_weak_places(const MapView& map, const std::vector<KeyframeLocalizability>& places,
+                                                      std::size_t max_each);
 
 /// Why, and what to do: one line without the position.
 [[nodiscard]] std::string explain(const MapView& map, const KeyframeLocalizability& place);
@@ -34,6 +35,7 @@ struct WeakPlace {
 [[nodiscard]] Eigen::Vector3d shown_position(const MapView& map, std::uint32_t keyframe);
 
 /// Shares of keyframes in each class, then the weak places with their numbers, positions and reasons.
-[[nodiscard]] std::string format_places(const MapView& map, const std::vector<KeyframeLocalizability>& places, const std::vector<WeakPlace>& weak);
+[[nodiscard]] std::string format_places(const MapView& map, const std::vector<KeyframeLocalizability>& places,
+                                        const std::vector<WeakPlace>& weak);
 
 }  // namespace camloc::map_tool

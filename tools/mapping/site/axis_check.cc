@@ -122,7 +122,8 @@ std::string explain_upside_down(std::span<const PointPair> pairs, const Alignmen
 std::string check_up(const Rigid3& T_wcs_map, const Eigen::Vector3d& up_map) {
   const Eigen::Vector3d up_wcs = T_wcs_map.rotation * up_map.normalized();
   if (up_wcs.z() > kMaxTiltCosine) return "";
-  return "up in the map is " + axis_name(up_wcs) + " in the site coordinates, not +z: is the points file in another axis order? "
+  return "up in the map is " + axis_name(up_wcs) +
+         " in the site coordinates, not +z: is the points file in another axis order? "
          "Poses will be given in its axes";
 }
 

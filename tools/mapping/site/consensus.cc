@@ -69,8 +69,8 @@ class Search {
   [[nodiscard]] Consensus result() const {
     Consensus consensus;
     if (choices_.empty()) return consensus;
-    const auto best = std::min_element(choices_.begin(), choices_.end(),
-                                       [](const auto& a, const auto& b) { return a.second.cost < b.second.cost; });
+    const auto best =
+        std::min_element(choices_.begin(), choices_.end(), [](const auto& a, const auto& b) { return a.second.cost < b.second.cost; });
     consensus.is_inlier = best->first;
     consensus.num_inliers = best->second.num_inliers;
     consensus.rms_m = best->second.rms_m;

@@ -16,7 +16,7 @@ namespace camloc::map_tool {
 struct Consensus {
   std::vector<bool> is_inlier;  ///< as many as pairs; empty when no triple determines a motion
   std::size_t num_inliers = 0;
-  double rms_m = 0;                     ///< of the inliers
+  double rms_m = 0;  ///< of the inliers
   /// Another choice of as few outliers explains the pairs about as well: which pair is wrong cannot be told.
   bool is_ambiguous = false;
   std::vector<bool> is_outlier_elsewhere;  ///< pairs that are outliers in one of those choices

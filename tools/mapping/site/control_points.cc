@@ -130,9 +130,9 @@ struct Columns {
 /// Index of a column title in the order of Columns: 0 name, 1..3 x y z, 4 sigma; nullopt for any other word.
 std::optional<std::size_t> column_of(std::string_view title) {
   static const std::map<std::string, std::size_t, std::less<>> kTitles = {
-      {"name", 0},   {"id", 0},       {"point", 0}, {"point_id", 0}, {"nr", 0},  {"no", 0},      {"x", 1},     {"e", 1},
-      {"east", 1},   {"easting", 1},  {"y", 2},     {"n", 2},        {"north", 2}, {"northing", 2}, {"z", 3},  {"h", 3},
-      {"height", 3}, {"elevation", 3}, {"up", 3},   {"u", 3},        {"sigma", 4}, {"sigma_m", 4}};
+      {"name", 0},   {"id", 0},        {"point", 0}, {"point_id", 0}, {"nr", 0},    {"no", 0},       {"x", 1}, {"e", 1},
+      {"east", 1},   {"easting", 1},   {"y", 2},     {"n", 2},        {"north", 2}, {"northing", 2}, {"z", 3}, {"h", 3},
+      {"height", 3}, {"elevation", 3}, {"up", 3},    {"u", 3},        {"sigma", 4}, {"sigma_m", 4}};
   const auto found = kTitles.find(lower_case(title));
   return found == kTitles.end() ? std::nullopt : std::optional(found->second);
 }
@@ -231,8 +231,9 @@ Result<std::vector<ControlPoint>> parse_control_points(std::string_view text, co
     if (!point) return point.status();
     const auto [known, is_new] = line_of_name.emplace(point->name, line.number);
     if (!is_new) {
-      return line_error(file_name, line.number, "point " + in_quotes(point->name) + " is already in line " + std::to_string(known->second) +
-                                                    "; give each point a name of its own");
+      return line_error(file_name, line.number,
+                        "point " + in_quotes(point->name) + " is already in line " + std::to_string(known->second) +
+                            "; give each point a name of its own");
     }
     points.push_back(*point);
   }

@@ -30,9 +30,9 @@
 
 namespace camloc::map_tool {
 
-inline constexpr double kDefaultPointSigmaM = 0.01;     ///< of a surveyed coordinate
-inline constexpr double kDefaultPickedSigmaM = 0.02;    ///< of a position picked in the map
-inline constexpr double kDefaultPixelSigmaPx = 1.0;     ///< of a pixel picked in an image
+inline constexpr double kDefaultPointSigmaM = 0.01;   ///< of a surveyed coordinate
+inline constexpr double kDefaultPickedSigmaM = 0.02;  ///< of a position picked in the map
+inline constexpr double kDefaultPixelSigmaPx = 1.0;   ///< of a pixel picked in an image
 
 struct ControlPoint {
   std::string name;
@@ -50,7 +50,7 @@ struct ControlObservation {
   std::uint32_t landmark = 0;                       ///< kLandmark
   std::uint64_t frame = 0;                          ///< kPixel: index in the whole recording
   double u = 0, v = 0;                              ///< kPixel: of the colour image, as recorded (distorted)
-  double sigma = 0;  ///< metres, for kPixel pixels; 0 for a landmark: what the map says of it
+  double sigma = 0;                                 ///< metres, for kPixel pixels; 0 for a landmark: what the map says of it
   int line = 0;
 };
 
@@ -73,8 +73,8 @@ struct PixelMeasurement {
 
 /// `lookup` belongs to `camera`, `depth` is the frame's depth image. kInvalid: the pixel is outside of the image; kNotFound:
 /// there is no depth, or the pixel is at the edge of something.
-[[nodiscard]] Result<PixelMeasurement> measure_pixel(const ControlObservation& pixel, const RgbdCamera& camera,
-                                                     const DepthLookup& lookup, ImageView<std::uint16_t> depth);
+[[nodiscard]] Result<PixelMeasurement> measure_pixel(const ControlObservation& pixel, const RgbdCamera& camera, const DepthLookup& lookup,
+                                                     ImageView<std::uint16_t> depth);
 
 /// By the line of the observation; an error says why there is none.
 using PixelMeasurements = std::map<int, Result<PixelMeasurement>>;
@@ -88,8 +88,8 @@ void measure_pixels(const std::vector<ControlObservation>& observations, const R
 struct PointSighting {
   std::string name;
   Eigen::Vector3d p_map = Eigen::Vector3d::Zero();
-  double sigma_m = 0;   ///< per axis
-  std::string source;   ///< see describe()
+  double sigma_m = 0;  ///< per axis
+  std::string source;  ///< see describe()
 };
 
 /// The measured pixel as a point of the map; its sigma has the pixel's, the depth's and the pose's.

@@ -89,7 +89,8 @@ std::string describe(const ControlObservation& observation) {
 Result<PixelMeasurement> measure_pixel(const ControlObservation& pixel, const RgbdCamera& camera, const DepthLookup& lookup,
                                        ImageView<std::uint16_t> depth) {
   if (pixel.u > camera.color.width - 0.5 || pixel.v > camera.color.height - 0.5) {
-    return {ErrorCode::kInvalid, "outside of the image of " + std::to_string(camera.color.width) + "x" + std::to_string(camera.color.height)};
+    return {ErrorCode::kInvalid,
+            "outside of the image of " + std::to_string(camera.color.width) + "x" + std::to_string(camera.color.height)};
   }
   if (depth.empty()) return {ErrorCode::kNotFound, "the frame has no depth image"};
   if (depth.width != camera.depth.width || depth.height != camera.depth.height) {

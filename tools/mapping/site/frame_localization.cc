@@ -19,7 +19,8 @@ using Frames = std::map<std::uint64_t, LocalizedFrame>;
 Status check_size(const FrameSourceInfo& info, const RgbdCamera& camera, const std::string& sequence_url) {
   if (info.color_width == camera.color.width && info.color_height == camera.color.height) return Status::ok();
   return {ErrorCode::kInvalid, sequence_url + ": images of " + std::to_string(info.color_width) + "x" + std::to_string(info.color_height) +
-                                   ", but --camera is for " + std::to_string(camera.color.width) + "x" + std::to_string(camera.color.height)};
+                                   ", but --camera is for " + std::to_string(camera.color.width) + "x" +
+                                   std::to_string(camera.color.height)};
 }
 
 Result<PoseWithCovariance> pose_of(const Localization& localization) {

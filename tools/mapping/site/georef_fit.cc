@@ -74,9 +74,8 @@ std::string explain_rank(std::span<const PointPair> pairs) {
   if (alignment.rank == AlignmentRank::kFull && sigma_rad < kMaxTurnSigmaRad) return "";
   const Eigen::Vector3d axis = eigen.eigenvectors().col(2);
   const std::string direction = text_of("(%.2f, %.2f, %.2f)", axis.x(), axis.y(), axis.z());
-  const std::string known = alignment.rank == AlignmentRank::kLine
-                                ? "not known"
-                                : text_of("known only to %.0f deg", std::min(180.0, degrees(sigma_rad)));
+  const std::string known =
+      alignment.rank == AlignmentRank::kLine ? "not known" : text_of("known only to %.0f deg", std::min(180.0, degrees(sigma_rad)));
   return "the control points lie on a line, direction " + direction + ": the turn about it is " + known + "; add a point beside the line";
 }
 
@@ -89,7 +88,8 @@ std::string worst_distance(const std::vector<GeorefPoint>& points) {
       const double in_site = (points[i].pair.p_a - points[j].pair.p_a).norm(), in_map = (points[i].pair.p_b - points[j].pair.p_b).norm();
       if (std::abs(in_site - in_map) <= worst) continue;
       worst = std::abs(in_site - in_map);
-      text = "from " + points[i].name + " to " + points[j].name + text_of(" it is %.3f m in the site and %.3f m in the map", in_site, in_map);
+      text =
+          "from " + points[i].name + " to " + points[j].name + text_of(" it is %.3f m in the site and %.3f m in the map", in_site, in_map);
     }
   }
   return text;
@@ -111,8 +111,8 @@ std::string judge(const Consensus& consensus, const GeorefOptions& options, Geor
       if (is_doubtful) fit->points[i].verdict = PointVerdict::kUnclear;
     }
     if (!axes.empty()) return axes;
-    return "the points contradict each other and it cannot be told which one is wrong: " + worst_distance(fit->points) +
-           "; check " + joined(names_with(fit->points, PointVerdict::kUnclear)) + " or add points";
+    return "the points contradict each other and it cannot be told which one is wrong: " + worst_distance(fit->points) + "; check " +
+           joined(names_with(fit->points, PointVerdict::kUnclear)) + " or add points";
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (consensus.is_inlier[i]) continue;
@@ -127,9 +127,7 @@ void compute(GeorefFit* fit) {
   fit->rigid = align_rigid(pairs);
   fit->similarity = align_similarity(pairs);
   fit->is_fitted = true;
-  if (fit->rigid.degrees_of_freedom > 0) {
-    fit->covariance_factor = std::max(1.0, fit->rigid.chi_squared / fit->rigid.degrees_of_freedom);
-  }
+  if (fit->rigid.degrees_of_freedom > 0) { fit->covariance_factor = std::max(1.0, fit->rigid.chi_squared / fit->rigid.degrees_of_freedom); }
   fit->datum = {fit->rigid.T_a_b, fit->covariance_factor * fit->rigid.covariance};
 
   const std::vector<LeaveOneOutResidual> left_out = leave_one_out(pairs);
@@ -165,9 +163,10 @@ void add_warnings(const GeorefOptions& options, GeorefFit* fit) {
   const double scale_sigma = fit->similarity.scale_sigma * std::sqrt(fit->covariance_factor);
   const double scale_error = fit->similarity.scale - 1;
   if (std::abs(scale_error) > kMaxScaleError && std::abs(scale_error) > 2 * scale_sigma) {
-    fit->warnings.push_back(text_of("the site is %.1f %% %s than the map (similarity scale %.4f +- %.4f): check the depth scale of the camera "
-                                    "file and the unit of the points",
-                                    100 * std::abs(scale_error), scale_error > 0 ? "larger" : "smaller", fit->similarity.scale, scale_sigma));
+    fit->warnings.push_back(
+        text_of("the site is %.1f %% %s than the map (similarity scale %.4f +- %.4f): check the depth scale of the camera "
+                "file and the unit of the points",
+                100 * std::abs(scale_error), scale_error > 0 ? "larger" : "smaller", fit->similarity.scale, scale_sigma));
   }
   if (options.up_map) {
     if (const std::string warning = check_up(fit->rigid.T_a_b, *options.up_map); !warning.empty()) fit->warnings.push_back(warning);

@@ -29,16 +29,16 @@ enum class PointVerdict {
 /// A control point that the map knows.
 struct GeorefPoint {
   std::string name;
-  PointPair pair;                   ///< a: wcs, b: map; sigma of both
+  PointPair pair;  ///< a: wcs, b: map; sigma of both
   std::size_t num_sightings = 1;
   double scatter_m = 0;
   Eigen::Vector3d residual_m = Eigen::Vector3d::Zero();  ///< wcs coordinates minus fitted ones
-  LeaveOneOutResidual left_out;     ///< where the other points of the fit put it
+  LeaveOneOutResidual left_out;                          ///< where the other points of the fit put it
   PointVerdict verdict = PointVerdict::kGood;
 };
 
 struct GeorefOptions {
-  double tolerance_m = 0.10;          ///< a point that is off by less is never a suspect
+  double tolerance_m = 0.10;  ///< a point that is off by less is never a suspect
   bool is_excluding_suspects = false;
   /// Up in the map, rough, to tell which axes were exchanged and to warn where z is not up.
   std::optional<Eigen::Vector3d> up_map;
@@ -46,12 +46,12 @@ struct GeorefOptions {
 
 struct GeorefFit {
   std::vector<GeorefPoint> points;
-  bool is_fitted = false;           ///< the numbers below exist
-  Alignment rigid, similarity;      ///< of the points that are in the fit
+  bool is_fitted = false;       ///< the numbers below exist
+  Alignment rigid, similarity;  ///< of the points that are in the fit
   WcsDatum datum;
-  double covariance_factor = 1;     ///< what the residuals say over what the sigmas say, at least 1; in datum.covariance
-  double rms_leave_one_out_m = 0;   ///< over the points of the fit that their others determine
-  std::string problem;              ///< why the fit must not be used; empty when it may
+  double covariance_factor = 1;    ///< what the residuals say over what the sigmas say, at least 1; in datum.covariance
+  double rms_leave_one_out_m = 0;  ///< over the points of the fit that their others determine
+  std::string problem;             ///< why the fit must not be used; empty when it may
   std::vector<std::string> warnings;
 };
 

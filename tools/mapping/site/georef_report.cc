@@ -41,9 +41,11 @@ std::string joined(const std::vector<std::string>& names) {
 void append_point(const GeorefPoint& point, int name_columns, std::string* text) {
   const Eigen::Vector3d& d = point.residual_m;
   append_text(text, "%-*.*s %8.3f %8.3f %8.3f %8.3f %7.3f ", name_columns, name_columns, point.name.c_str(), d.x(), d.y(), d.z(), d.norm(),
-         point.pair.sigma_m);
-  if (point.left_out.is_determined) append_text(text, "%9.3f %6.1f  ", point.left_out.error_m.norm(), point.left_out.sigmas());
-  else append_text(text, "%9s %6s  ", "-", "-");
+              point.pair.sigma_m);
+  if (point.left_out.is_determined)
+    append_text(text, "%9.3f %6.1f  ", point.left_out.error_m.norm(), point.left_out.sigmas());
+  else
+    append_text(text, "%9s %6s  ", "-", "-");
   *text += to_string(point.verdict);
   if (point.num_sightings > 1) append_text(text, "  %zu sightings, scatter %.3f", point.num_sightings, point.scatter_m);
   *text += "\n";
@@ -53,29 +55,30 @@ void append_points(const GeorefFit& fit, std::string* text) {
   std::size_t longest = 5;
   for (const GeorefPoint& point : fit.points) longest = std::max(longest, point.name.size());
   const int name_columns = static_cast<int>(std::min(longest, kMaxNameColumns));
-  append_text(text, "%-*s %8s %8s %8s %8s %7s %9s %6s  %s\n", name_columns, "point", "dx", "dy", "dz", "norm", "sigma", "predicted", "sigmas",
-         "verdict");
+  append_text(text, "%-*s %8s %8s %8s %8s %7s %9s %6s  %s\n", name_columns, "point", "dx", "dy", "dz", "norm", "sigma", "predicted",
+              "sigmas", "verdict");
   for (const GeorefPoint& point : fit.points) append_point(point, name_columns, text);
   *text += "Metres, site minus fit. 'predicted': how far the point is from where the others put it, also in standard deviations.\n\n";
 }
 
 /// The datum that was found, also where it is not written because of a suspect.
 bool is_usable(const GeorefFit& fit) {
-  return std::none_of(fit.points.begin(), fit.points.end(), [](const GeorefPoint& point) { return point.verdict == PointVerdict::kUnclear; });
+  return std::none_of(fit.points.begin(), fit.points.end(),
+                      [](const GeorefPoint& point) { return point.verdict == PointVerdict::kUnclear; });
 }
 
 void append_fit(const GeorefFit& fit, std::string* text) {
-  const auto num_used = std::count_if(fit.points.begin(), fit.points.end(),
-                                      [](const GeorefPoint& point) { return is_in_fit(point.verdict); });
+  const auto num_used =
+      std::count_if(fit.points.begin(), fit.points.end(), [](const GeorefPoint& point) { return is_in_fit(point.verdict); });
   append_text(text, "%-14s%.3f m over %d points; predicted from the others %.3f m\n", "RMS", fit.rigid.rms_m, static_cast<int>(num_used),
-         fit.rms_leave_one_out_m);
+              fit.rms_leave_one_out_m);
   if (!is_usable(fit)) return;
   append_text(text, "%-14s%.5f +- %.5f with free scale (written is the rigid fit, scale 1)\n", "scale", fit.similarity.scale,
-         fit.similarity.scale_sigma * std::sqrt(fit.covariance_factor));
+              fit.similarity.scale_sigma * std::sqrt(fit.covariance_factor));
   const Eigen::Vector3d& t = fit.datum.T_wcs_map.translation;
   const Eigen::Quaterniond& q = fit.datum.T_wcs_map.rotation;
-  append_text(text, "%-14sposition %.4f %.4f %.4f m, rotation wxyz %.7f %.7f %.7f %.7f\n", "T_wcs_map", t.x(), t.y(), t.z(), q.w(), q.x(), q.y(),
-         q.z());
+  append_text(text, "%-14sposition %.4f %.4f %.4f m, rotation wxyz %.7f %.7f %.7f %.7f\n", "T_wcs_map", t.x(), t.y(), t.z(), q.w(), q.x(),
+              q.y(), q.z());
   const DatumSigmas sigmas = sigmas_of(fit);
   append_text(text, "%-14s%.3f m amid the points, %.3f deg, per axis", "uncertainty", sigmas.position_m, degrees(sigmas.turn_rad));
   if (fit.covariance_factor > 1) append_text(text, " (residuals are %.1f times the sigmas: scaled up)", std::sqrt(fit.covariance_factor));
@@ -83,7 +86,8 @@ void append_fit(const GeorefFit& fit, std::string* text) {
 }
 
 void append_line(const char* label, const std::string& content, std::string* text) {
-  if (!content.empty()) *text += std::string(label) + std::string(14 - std::min<std::size_t>(13, std::string(label).size()), ' ') + content + "\n";
+  if (!content.empty())
+    *text += std::string(label) + std::string(14 - std::min<std::size_t>(13, std::string(label).size()), ' ') + content + "\n";
 }
 
 Json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }

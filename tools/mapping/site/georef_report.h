@@ -14,7 +14,7 @@ namespace camloc::map_tool {
 struct GeorefSummary {
   std::string map_path, points_path, observed_path, out_path;
   GeorefFit fit;
-  std::vector<std::string> left_out;        ///< observations without a point
+  std::vector<std::string> left_out;                          ///< observations without a point
   std::vector<std::string> only_in_points, only_in_observed;  ///< names without partner
   bool is_written = false;
   bool has_replaced_datum = false;

@@ -72,7 +72,8 @@ Eigen::Vector3d up_axis(const MapView& map) {
   if (map.info().wcs) return map.info().wcs->T_wcs_map.rotation.conjugate() * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d axis = upright_axis(map).value_or(flattest_axis(map));
   double image_top = 0;
-  for (std::uint32_t k = 0; k < map.keyframes().size(); ++k) image_top -= (map.keyframe_pose(k).rotation * Eigen::Vector3d::UnitY()).dot(axis);
+  for (std::uint32_t k = 0; k < map.keyframes().size(); ++k)
+    image_top -= (map.keyframe_pose(k).rotation * Eigen::Vector3d::UnitY()).dot(axis);
   return image_top < 0 ? Eigen::Vector3d(-axis) : axis;
 }
 

@@ -20,9 +20,9 @@ Result<std::vector<ControlPair>> parse_point_pairs(std::string_view text, const 
   for (const TextLine& line : content_lines(text)) {
     const auto fields = split_fields(line.text);
     if (fields.size() != 7 && fields.size() != 8) {
-      return line_error(path, line.number,
-                        "has " + std::to_string(fields.size()) +
-                            " fields; 'name map_x map_y map_z cloud_x cloud_y cloud_z [sigma]' has 7 or 8");
+      return line_error(
+          path, line.number,
+          "has " + std::to_string(fields.size()) + " fields; 'name map_x map_y map_z cloud_x cloud_y cloud_z [sigma]' has 7 or 8");
     }
     ControlPair pair;
     pair.name = std::string(fields[0]);
