@@ -7,7 +7,7 @@
 //   camera  colour camera, optical convention: x right, y down, z forward
 //   depth   depth camera, same convention
 //   body    the headset or robot that carries the camera
-//   submap  a piece of the map with its own origin, axes as `map`
+//   cube    a piece of the map whose coordinates have an origin of their own, axes as `map`
 //   map     metric frame of the feature database
 //   wcs     world coordinate system of the site: metres, axes of the survey that fixed it
 //

@@ -21,7 +21,7 @@ LocalLandmarks::LocalLandmarks(const MapView& map, const Intrinsics& color, cons
   for (int code = 0; code < 256; ++code) {
     log_reference_[static_cast<std::size_t>(code)] = std::log(MapView::reference_m(static_cast<std::uint8_t>(code)));
   }
-  submaps_.reserve(map.submaps().size());
+  cubes_.reserve(map.cubes().size());
   const auto capacity = static_cast<std::size_t>(options.max_landmarks) * kOversampling;
   projected_.reserve(capacity);
   num_observations_.reserve(capacity);
@@ -31,36 +31,35 @@ std::span<const ProjectedLandmark> LocalLandmarks::project(const Rigid3& T_map_c
   projected_.clear();
   num_observations_.clear();
   num_visited_ = 0;
-  collect_submaps(T_map_camera.inverse());
-  for (const NearSubmap& near : submaps_) project_submap(map_->submaps()[near.index], T_map_camera, radius_px);
+  collect_cubes(T_map_camera.inverse());
+  for (const NearCube& near : cubes_) project_cube(map_->cubes()[near.index], T_map_camera, radius_px);
   keep_most_observed();
   return projected_;
 }
 
-void LocalLandmarks::collect_submaps(const Rigid3& T_camera_map) {
-  submaps_.clear();
-  const auto submaps = map_->submaps();
-  for (std::uint32_t i = 0; i < submaps.size() && submaps_.size() < submaps_.capacity(); ++i) {
-    const auto& submap = submaps[i];
-    const double half = 0.5 * submap.extent_m;
-    const Eigen::Vector3d center_map = Eigen::Vector3d(submap.origin_m[0], submap.origin_m[1], submap.origin_m[2]).array() + half;
+void LocalLandmarks::collect_cubes(const Rigid3& T_camera_map) {
+  cubes_.clear();
+  const auto cubes = map_->cubes();
+  for (std::uint32_t i = 0; i < cubes.size() && cubes_.size() < cubes_.capacity(); ++i) {
+    const auto& cube = cubes[i];
+    const double half = 0.5 * cube.extent_m;
+    const Eigen::Vector3d center_map = Eigen::Vector3d(cube.origin_m[0], cube.origin_m[1], cube.origin_m[2]).array() + half;
     const Eigen::Vector3d center = T_camera_map * center_map;
     const double radius = half * std::sqrt(3.0);
     if (center.z() < -radius || center.norm() > options_.max_range_m + radius) continue;
-    submaps_.push_back({static_cast<float>(std::max(0.0, center.norm() - radius)), i});
+    cubes_.push_back({static_cast<float>(std::max(0.0, center.norm() - radius)), i});
   }
-  const auto count = std::min(submaps_.size(), static_cast<std::size_t>(options_.max_submaps));
-  std::partial_sort(submaps_.begin(), submaps_.begin() + static_cast<std::ptrdiff_t>(count), submaps_.end(),
-                    [](const NearSubmap& a, const NearSubmap& b) {
-                      return a.distance_m != b.distance_m ? a.distance_m < b.distance_m : a.index < b.index;
-                    });
-  submaps_.resize(count);
+  const auto count = std::min(cubes_.size(), static_cast<std::size_t>(options_.max_cubes));
+  std::partial_sort(
+      cubes_.begin(), cubes_.begin() + static_cast<std::ptrdiff_t>(count), cubes_.end(),
+      [](const NearCube& a, const NearCube& b) { return a.distance_m != b.distance_m ? a.distance_m < b.distance_m : a.index < b.index; });
+  cubes_.resize(count);
 }
 
-void LocalLandmarks::project_submap(const map_format::SubmapRecord& submap, const Rigid3& T_map_camera, float radius_px) {
+void LocalLandmarks::project_cube(const map_format::CubeRecord& cube, const Rigid3& T_map_camera, float radius_px) {
   const auto landmarks = map_->landmarks();
-  const std::uint32_t first = std::min<std::uint32_t>(submap.first_landmark, static_cast<std::uint32_t>(landmarks.size()));
-  const std::uint32_t end = first + std::min<std::uint32_t>(submap.num_landmarks, static_cast<std::uint32_t>(landmarks.size()) - first);
+  const std::uint32_t first = std::min<std::uint32_t>(cube.first_landmark, static_cast<std::uint32_t>(landmarks.size()));
+  const std::uint32_t end = first + std::min<std::uint32_t>(cube.num_landmarks, static_cast<std::uint32_t>(landmarks.size()) - first);
 
   const Eigen::Matrix3f R_camera_map = T_map_camera.rotation.conjugate().toRotationMatrix().cast<float>();
   const Eigen::Vector3f camera_center = T_map_camera.translation.cast<float>();
@@ -72,7 +71,7 @@ void LocalLandmarks::project_submap(const map_format::SubmapRecord& submap, cons
   for (std::uint32_t i = first; i < end && num_visited_ < options_.max_visited && projected_.size() < projected_.capacity(); ++i) {
     ++num_visited_;
     const auto& landmark = landmarks[i];
-    const Eigen::Vector3f to_landmark = MapView::position_m(submap, landmark) - camera_center;
+    const Eigen::Vector3f to_landmark = MapView::position_m(cube, landmark) - camera_center;
     const Eigen::Vector3f p_camera = R_camera_map * to_landmark;
     if (p_camera.z() < kMinDepth || p_camera.z() > static_cast<float>(options_.max_range_m)) continue;
     const float x = p_camera.x() / p_camera.z();

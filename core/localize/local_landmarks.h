@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which landmarks should a camera at a given pose see, and where in the image? Walks the sub-maps that the view frustum
+// Which landmarks should a camera at a given pose see, and where in the image? Walks the cubes that the view frustum
 // touches, nearest first, so the cost follows what is in view and not the size of the map.
 #pragma once
 
@@ -17,7 +17,7 @@ namespace camloc {
 
 struct LocalLandmarksOptions {
   int max_landmarks = 3000;  ///< projected at most; the most often observed are kept
-  int max_submaps = 64;      ///< visited at most
+  int max_cubes = 64;        ///< visited at most
   int max_visited = 60000;   ///< landmarks looked at, at most
   double max_range_m = 8.0;
   double view_angle_margin_rad = 0.5;  ///< beyond the widest angle it was mapped from
@@ -32,8 +32,8 @@ class LocalLandmarks {
   std::span<const ProjectedLandmark> project(const Rigid3& T_map_camera, float radius_px);
 
  private:
-  void collect_submaps(const Rigid3& T_camera_map);
-  void project_submap(const map_format::SubmapRecord& submap, const Rigid3& T_map_camera, float radius_px);
+  void collect_cubes(const Rigid3& T_camera_map);
+  void project_cube(const map_format::CubeRecord& cube, const Rigid3& T_map_camera, float radius_px);
   void keep_most_observed();
 
   const MapView* map_;
@@ -41,11 +41,11 @@ class LocalLandmarks {
   LocalLandmarksOptions options_;
   float inverse_log_scale_;
   std::vector<float> log_reference_;  ///< per 8-bit code
-  struct NearSubmap {
+  struct NearCube {
     float distance_m;
     std::uint32_t index;
   };
-  std::vector<NearSubmap> submaps_;
+  std::vector<NearCube> cubes_;
   std::vector<ProjectedLandmark> projected_;
   std::vector<std::uint8_t> num_observations_;  ///< parallel to projected_
   int num_visited_ = 0;

@@ -46,16 +46,16 @@ inline constexpr std::array<float, 256> kReferenceTable = make_reference_table()
   return static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(255, not_below - kReferenceTable.begin()));
 }
 
-/// One coordinate within the sub-map cubes: p = submap_m * (cell + code / 65535).
+/// One coordinate within its cube: p = cube_m * (cell + code / 65535).
 struct CubeCoordinate {
   std::int32_t cell = 0;
   std::uint16_t code = 0;
   friend bool operator==(const CubeCoordinate&, const CubeCoordinate&) = default;
 };
 
-/// `position_m / submap_m` must fit into 32 bits.
-[[nodiscard]] inline CubeCoordinate encode_position(float position_m, double submap_m) {
-  const double in_cells = static_cast<double>(position_m) / submap_m;
+/// `position_m / cube_m` must fit into 32 bits.
+[[nodiscard]] inline CubeCoordinate encode_position(float position_m, double cube_m) {
+  const double in_cells = static_cast<double>(position_m) / cube_m;
   const double cell = std::floor(in_cells);
   return {static_cast<std::int32_t>(cell), static_cast<std::uint16_t>(std::lround(std::clamp(in_cells - cell, 0.0, 1.0) * 65535))};
 }

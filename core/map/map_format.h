@@ -30,8 +30,8 @@
 //
 // Sections (element, count)
 //   meta                MetaRecord, 1
-//   submaps             SubmapRecord, num_submaps; each at least one landmark
-//   landmarks           LandmarkRecord, num_landmarks; ordered by sub-map, within one along a Morton curve
+//   cubes             CubeRecord, num_cubes; each at least one landmark
+//   landmarks           LandmarkRecord, num_landmarks; ordered by cube, within one along a Morton curve
 //   descriptors         32 bytes, num_descriptors; those of landmark 0 first, at least one each; bit order of cv::ORB
 //   keyframes           KeyframeRecord, num_keyframes <= 65535
 //   keyframe_lists      bytes; per keyframe its landmark indices, ascending: the first index, then the steps to the next,
@@ -71,7 +71,7 @@ static_assert(sizeof(FileHeader) == 64);
 
 enum class SectionId : std::uint32_t {
   kMeta,
-  kSubmaps,
+  kCubes,
   kLandmarks,
   kDescriptors,
   kKeyframes,
@@ -84,7 +84,7 @@ enum class SectionId : std::uint32_t {
 };
 inline constexpr std::uint32_t kNumSections = 11;
 inline constexpr std::array<const char*, kNumSections> kSectionNames = {
-    "meta",  "submaps",    "landmarks",          "descriptors",      "keyframes", "keyframe_lists",
+    "meta",  "cubes",      "landmarks",          "descriptors",      "keyframes", "keyframe_lists",
     "words", "word_begin", "inverted_keyframes", "inverted_weights", "wcs"};
 
 struct SectionRecord {
@@ -132,17 +132,17 @@ static_assert(sizeof(MetaRecord) == 432);
 
 /// A cube of the map with its own origin: landmark coordinates are 16-bit fractions of its side.
 /// p_map = origin + extent * q / 65535. Its landmarks are contiguous.
-struct SubmapRecord {
+struct CubeRecord {
   std::array<float, 3> origin_m;
   float extent_m;
   std::uint32_t first_landmark;
   std::uint32_t num_landmarks;
 };
-static_assert(sizeof(SubmapRecord) == 24);
+static_assert(sizeof(CubeRecord) == 24);
 
 /// Everything about a landmark but its descriptors. The codes are defined in landmark_codes.h.
 struct LandmarkRecord {
-  std::array<std::uint16_t, 3> position;  ///< fraction of its sub-map's extent
+  std::array<std::uint16_t, 3> position;  ///< fraction of its cube's extent
   std::array<std::uint8_t, 2> direction;  ///< octahedral code of the mean direction landmark -> camera, axes of `map`
   std::uint8_t view_cosine;               ///< cosine of the widest angle between that direction and an observation, [-1, 1] -> 0..255
   std::uint8_t min_reference;             ///< smallest and largest reference distance over its observations; the reference

@@ -138,16 +138,16 @@ Status check_meta(const map_format::MetaRecord& meta) {
   return Status::ok();
 }
 
-Status check_submaps(const MapSections& map) {
+Status check_cubes(const MapSections& map) {
   std::uint64_t next_landmark = 0;
-  for (const auto& submap : map.submaps) {
-    if (!all_finite(submap.origin_m) || !(submap.extent_m > 0 && std::isfinite(submap.extent_m))) {
-      return corrupt("a sub-map without finite place and size");
+  for (const auto& cube : map.cubes) {
+    if (!all_finite(cube.origin_m) || !(cube.extent_m > 0 && std::isfinite(cube.extent_m))) {
+      return corrupt("a cube without finite place and size");
     }
-    if (submap.first_landmark != next_landmark || submap.num_landmarks == 0) return corrupt("sub-maps with gaps or overlap");
-    next_landmark += submap.num_landmarks;
+    if (cube.first_landmark != next_landmark || cube.num_landmarks == 0) return corrupt("cubes with gaps or overlap");
+    next_landmark += cube.num_landmarks;
   }
-  if (next_landmark != map.landmarks.size()) return corrupt("sub-maps do not hold all landmarks");
+  if (next_landmark != map.landmarks.size()) return corrupt("cubes do not hold all landmarks");
   return Status::ok();
 }
 
@@ -224,7 +224,7 @@ Result<MapSections> read_map_sections(std::span<const std::byte> bytes) {
   map.header = *header;
   SectionReader reader(bytes);
   const auto meta = reader.next<map_format::MetaRecord>();
-  map.submaps = reader.next<map_format::SubmapRecord>();
+  map.cubes = reader.next<map_format::CubeRecord>();
   map.landmarks = reader.next<map_format::LandmarkRecord>();
   map.descriptors = reader.next<Descriptor>();
   map.keyframes = reader.next<map_format::KeyframeRecord>();
@@ -242,7 +242,7 @@ Result<MapSections> read_map_sections(std::span<const std::byte> bytes) {
 
 Status check_map_content(const MapSections& map) {
   using Check = Status (*)(const MapSections&);
-  constexpr Check kChecks[] = {check_submaps, check_landmarks, check_keyframes, check_inverted_file, check_wcs};
+  constexpr Check kChecks[] = {check_cubes, check_landmarks, check_keyframes, check_inverted_file, check_wcs};
   if (Status status = check_meta(map.meta); !status.is_ok()) return status;
   for (const Check check : kChecks) {
     if (Status status = check(map); !status.is_ok()) return status;

@@ -19,7 +19,7 @@ namespace camloc {
 struct MapSections {
   map_format::FileHeader header{};  ///< a copy
   map_format::MetaRecord meta{};    ///< a copy
-  std::span<const map_format::SubmapRecord> submaps;
+  std::span<const map_format::CubeRecord> cubes;
   std::span<const map_format::LandmarkRecord> landmarks;
   std::span<const Descriptor> descriptors;
   std::span<const map_format::KeyframeRecord> keyframes;

@@ -15,27 +15,27 @@
 namespace camloc {
 namespace {
 
+using map_format::CubeRecord;
 using map_format::LandmarkRecord;
-using map_format::SubmapRecord;
 
-/// A float in sub-map `cell` with this code: next to the middle of what the code stands for.
-float unpack_coordinate(std::int32_t cell, std::uint16_t code, double submap_m) {
+/// A float in cube `cell` with this code: next to the middle of what the code stands for.
+float unpack_coordinate(std::int32_t cell, std::uint16_t code, double cube_m) {
   const map_format::CubeCoordinate wanted{cell, code};
-  const float middle = static_cast<float>(submap_m * (cell + code / 65535.0));
-  if (map_format::encode_position(middle, submap_m) == wanted) return middle;
+  const float middle = static_cast<float>(cube_m * (cell + code / 65535.0));
+  if (map_format::encode_position(middle, cube_m) == wanted) return middle;
   const float below = std::nextafter(middle, -std::numeric_limits<float>::infinity());
-  if (map_format::encode_position(below, submap_m) == wanted) return below;
+  if (map_format::encode_position(below, cube_m) == wanted) return below;
   const float above = std::nextafter(middle, std::numeric_limits<float>::infinity());
-  return map_format::encode_position(above, submap_m) == wanted ? above : middle;
+  return map_format::encode_position(above, cube_m) == wanted ? above : middle;
 }
 
-Eigen::Vector3f unpack_position(const SubmapRecord& submap, const LandmarkRecord& record, double submap_m) {
-  Eigen::Vector3f position_m = MapView::position_m(submap, record);
-  if (submap.extent_m != static_cast<float>(submap_m)) return position_m;  // not from our writer: cubes of different size
+Eigen::Vector3f unpack_position(const CubeRecord& cube, const LandmarkRecord& record, double cube_m) {
+  Eigen::Vector3f position_m = MapView::position_m(cube, record);
+  if (cube.extent_m != static_cast<float>(cube_m)) return position_m;  // not from our writer: cubes of different size
   for (int axis = 0; axis < 3; ++axis) {
-    const double cell = std::round(static_cast<double>(submap.origin_m[axis]) / submap_m);
+    const double cell = std::round(static_cast<double>(cube.origin_m[axis]) / cube_m);
     if (std::abs(cell) > 1e9) continue;
-    position_m[axis] = unpack_coordinate(static_cast<std::int32_t>(cell), record.position[axis], submap_m);
+    position_m[axis] = unpack_coordinate(static_cast<std::int32_t>(cell), record.position[axis], cube_m);
   }
   return position_m;
 }
@@ -57,10 +57,10 @@ float unpack_view_cosine(std::uint8_t code) {
   return map_format::encode_view_cosine(cosine) == code ? cosine : cosine + 1e-6F;
 }
 
-MapLandmark unpack_landmark(const MapView& map, const SubmapRecord& submap, std::uint32_t index, double submap_m) {
+MapLandmark unpack_landmark(const MapView& map, const CubeRecord& cube, std::uint32_t index, double cube_m) {
   const LandmarkRecord& record = map.landmarks()[index];
   MapLandmark landmark;
-  landmark.position_m = unpack_position(submap, record, submap_m);
+  landmark.position_m = unpack_position(cube, record, cube_m);
   landmark.direction = unpack_direction(record.direction);
   landmark.view_cosine = unpack_view_cosine(record.view_cosine);
   landmark.min_reference_m = MapView::reference_m(record.min_reference);
@@ -74,12 +74,12 @@ MapLandmark unpack_landmark(const MapView& map, const SubmapRecord& submap, std:
 }
 
 std::vector<MapLandmark> unpack_landmarks(const MapView& map) {
-  const double submap_m = write_options_of(map).submap_m;
+  const double cube_m = write_options_of(map).cube_m;
   std::vector<MapLandmark> landmarks;
   landmarks.reserve(map.info().num_landmarks);
-  for (const SubmapRecord& submap : map.submaps()) {
-    for (std::uint32_t i = 0; i < submap.num_landmarks; ++i) {
-      landmarks.push_back(unpack_landmark(map, submap, submap.first_landmark + i, submap_m));
+  for (const CubeRecord& cube : map.cubes()) {
+    for (std::uint32_t i = 0; i < cube.num_landmarks; ++i) {
+      landmarks.push_back(unpack_landmark(map, cube, cube.first_landmark + i, cube_m));
     }
   }
   return landmarks;
@@ -127,11 +127,11 @@ MapData unpack_map(const MapView& map) {
 MapWriteOptions write_options_of(const MapView& map) {
   // The file has the nearest float; the shortest decimal with that float is the number somebody wrote.
   char text[32];
-  const float extent_m = map.submaps().front().extent_m;
+  const float extent_m = map.cubes().front().extent_m;
   const auto end = std::to_chars(text, text + sizeof text, extent_m).ptr;
   MapWriteOptions options;
-  options.submap_m = static_cast<double>(extent_m);
-  std::from_chars(text, end, options.submap_m);
+  options.cube_m = static_cast<double>(extent_m);
+  std::from_chars(text, end, options.cube_m);
   return options;
 }
 

@@ -135,7 +135,7 @@ MapInfo make_info(const std::string& path, const MapSections& map) {
   info.map_id = map.header.map_id;
   info.file_bytes = map.header.file_bytes;
   info.version = map.header.version;
-  info.num_submaps = count(map.submaps);
+  info.num_cubes = count(map.cubes);
   info.num_landmarks = count(map.landmarks);
   info.num_descriptors = count(map.descriptors);
   info.num_keyframes = count(map.keyframes);
@@ -170,7 +170,7 @@ struct MapView::Impl {
   FileIdentity identity;
   MapInfo info;
   MapSections map;
-  std::vector<map_format::SubmapRecord> submaps;
+  std::vector<map_format::CubeRecord> cubes;
   std::vector<map_format::KeyframeRecord> keyframes;
   std::vector<std::uint32_t> word_begin;
   std::vector<std::uint32_t> first_descriptor;  ///< per landmark, and the total at the end
@@ -181,7 +181,7 @@ Status MapView::Impl::load(const std::string& path) {
   Result<MapSections> sections = read_map_sections(mapping.bytes());
   if (!sections) return sections.status();
   map = *sections;
-  copy_table(&map.submaps, &submaps);
+  copy_table(&map.cubes, &cubes);
   copy_table(&map.keyframes, &keyframes);
   copy_table(&map.word_begin, &word_begin);
   if (Status status = check_map_content(map); !status.is_ok()) return status;
@@ -231,22 +231,22 @@ bool MapView::is_stale() const {
   return ::stat(impl_->info.path.c_str(), &status) != 0 || !(FileIdentity::of(status) == impl_->identity);
 }
 
-std::span<const map_format::SubmapRecord> MapView::submaps() const { return impl_->map.submaps; }
+std::span<const map_format::CubeRecord> MapView::cubes() const { return impl_->map.cubes; }
 std::span<const map_format::LandmarkRecord> MapView::landmarks() const { return impl_->map.landmarks; }
 std::span<const map_format::KeyframeRecord> MapView::keyframes() const { return impl_->map.keyframes; }
 std::span<const Descriptor> MapView::descriptors() const { return impl_->map.descriptors; }
 std::span<const Descriptor> MapView::words() const { return impl_->map.words; }
 
-std::uint32_t MapView::submap_of(std::uint32_t landmark) const {
+std::uint32_t MapView::cube_of(std::uint32_t landmark) const {
   assert(landmark < impl_->info.num_landmarks);
-  const auto& submaps = impl_->submaps;
-  const auto after = std::upper_bound(submaps.begin(), submaps.end(), landmark,
-                                      [](std::uint32_t index, const auto& submap) { return index < submap.first_landmark; });
-  return static_cast<std::uint32_t>(after - submaps.begin() - 1);
+  const auto& cubes = impl_->cubes;
+  const auto after = std::upper_bound(cubes.begin(), cubes.end(), landmark,
+                                      [](std::uint32_t index, const auto& cube) { return index < cube.first_landmark; });
+  return static_cast<std::uint32_t>(after - cubes.begin() - 1);
 }
 
 Eigen::Vector3f MapView::position_m(std::uint32_t landmark) const {
-  return position_m(impl_->submaps[submap_of(landmark)], impl_->map.landmarks[landmark]);
+  return position_m(impl_->cubes[cube_of(landmark)], impl_->map.landmarks[landmark]);
 }
 
 Eigen::Vector3f MapView::direction(const map_format::LandmarkRecord& landmark) { return map_format::decode_direction(landmark.direction); }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Read access to a .cmap file through a memory mapping. Everything is validated once in open(); after that there are only
-// indexes. Tables that hold indices into other tables (sub-maps, keyframes, first descriptors, words) are copied at open,
+// indexes. Tables that hold indices into other tables (cubes, keyframes, first descriptors, words) are copied at open,
 // a few bytes a landmark, and what stays in the file is clamped where it is used: a file overwritten in place while
 // mapped gives wrong landmarks (which verification rejects) but never a wild read.
 #pragma once
@@ -28,7 +28,7 @@ struct MapInfo {
   std::uint64_t map_id = 0;  ///< hash of the content, the same for identical maps
   std::uint64_t file_bytes = 0;
   std::uint32_t version = 0;
-  std::uint32_t num_submaps = 0, num_landmarks = 0, num_descriptors = 0, num_keyframes = 0, num_words = 0;
+  std::uint32_t num_cubes = 0, num_landmarks = 0, num_descriptors = 0, num_keyframes = 0, num_words = 0;
   std::uint32_t max_keyframe_landmarks = 0;  ///< length of the longest keyframe list, to size buffers
   float orb_scale_factor = 1.2F;
   std::uint32_t orb_num_levels = 8;
@@ -53,20 +53,20 @@ class MapView {
   /// True when the path no longer names the bytes that were opened: replaced, removed, or written to. One stat().
   [[nodiscard]] bool is_stale() const;
 
-  [[nodiscard]] std::span<const map_format::SubmapRecord> submaps() const;
+  [[nodiscard]] std::span<const map_format::CubeRecord> cubes() const;
   [[nodiscard]] std::span<const map_format::LandmarkRecord> landmarks() const;
   [[nodiscard]] std::span<const map_format::KeyframeRecord> keyframes() const;
   [[nodiscard]] std::span<const Descriptor> descriptors() const;  ///< all, ordered by landmark
   [[nodiscard]] std::span<const Descriptor> words() const;
 
-  /// Sub-map that holds a landmark.
-  [[nodiscard]] std::uint32_t submap_of(std::uint32_t landmark) const;
+  /// Cube that holds a landmark.
+  [[nodiscard]] std::uint32_t cube_of(std::uint32_t landmark) const;
   [[nodiscard]] Eigen::Vector3f position_m(std::uint32_t landmark) const;
-  /// Position with the sub-map already known: the fast way to walk through one.
-  [[nodiscard]] static Eigen::Vector3f position_m(const map_format::SubmapRecord& submap, const map_format::LandmarkRecord& landmark) {
-    const float scale = submap.extent_m * (1.0F / 65535.0F);
-    return {submap.origin_m[0] + scale * landmark.position[0], submap.origin_m[1] + scale * landmark.position[1],
-            submap.origin_m[2] + scale * landmark.position[2]};
+  /// Position with the cube already known: the fast way to walk through one.
+  [[nodiscard]] static Eigen::Vector3f position_m(const map_format::CubeRecord& cube, const map_format::LandmarkRecord& landmark) {
+    const float scale = cube.extent_m * (1.0F / 65535.0F);
+    return {cube.origin_m[0] + scale * landmark.position[0], cube.origin_m[1] + scale * landmark.position[1],
+            cube.origin_m[2] + scale * landmark.position[2]};
   }
   /// Unit vector from the landmark towards the cameras that mapped it.
   [[nodiscard]] static Eigen::Vector3f direction(const map_format::LandmarkRecord& landmark);

@@ -88,7 +88,7 @@ Status check_map(const MapData& map, const MapWriteOptions& options) {
   if (map.landmarks.empty()) return invalid("it has no landmark");
   if (map.landmarks.size() >= std::numeric_limits<std::int32_t>::max()) return invalid("it has too many landmarks");
   if (map.keyframes.size() > map_format::kMaxKeyframes) return invalid("it has more than 65535 keyframes");
-  if (!(options.submap_m >= 0.01 && options.submap_m <= 1e4)) return invalid("sub-maps must be 0.01 to 10000 m wide");
+  if (!(options.cube_m >= 0.01 && options.cube_m <= 1e4)) return invalid("cubes must be 0.01 to 10000 m wide");
   if (Status status = check_globals(map); !status.is_ok()) return status;
   for (const auto& landmark : map.landmarks) {
     if (Status status = check_landmark(landmark); !status.is_ok()) return status;
@@ -118,11 +118,11 @@ std::uint64_t spread_bits(std::uint64_t value) {
   return spread;
 }
 
-Placement place(const Eigen::Vector3f& position_m, double submap_m, std::uint32_t original) {
+Placement place(const Eigen::Vector3f& position_m, double cube_m, std::uint32_t original) {
   Placement placement;
   placement.original = original;
   for (int axis = 0; axis < 3; ++axis) {
-    const map_format::CubeCoordinate coordinate = map_format::encode_position(position_m[axis], submap_m);
+    const map_format::CubeCoordinate coordinate = map_format::encode_position(position_m[axis], cube_m);
     placement.cell[axis] = coordinate.cell;
     placement.position[axis] = coordinate.code;
     placement.morton |= spread_bits(placement.position[axis]) << axis;
@@ -131,11 +131,11 @@ Placement place(const Eigen::Vector3f& position_m, double submap_m, std::uint32_
 }
 
 /// All landmarks by cube, then along the Morton curve: neighbours in space become neighbours in the file, which makes the
-/// keyframe lists short and a walk through a sub-map sequential.
-std::vector<Placement> order_landmarks(const MapData& map, double submap_m) {
+/// keyframe lists short and a walk through a cube sequential.
+std::vector<Placement> order_landmarks(const MapData& map, double cube_m) {
   std::vector<Placement> order;
   order.reserve(map.landmarks.size());
-  for (std::uint32_t i = 0; i < map.landmarks.size(); ++i) order.push_back(place(map.landmarks[i].position_m, submap_m, i));
+  for (std::uint32_t i = 0; i < map.landmarks.size(); ++i) order.push_back(place(map.landmarks[i].position_m, cube_m, i));
   std::sort(order.begin(), order.end(), [](const Placement& a, const Placement& b) {
     return std::tie(a.cell, a.morton, a.original) < std::tie(b.cell, b.morton, b.original);
   });
@@ -204,16 +204,16 @@ LandmarkRecord to_record(const MapLandmark& landmark, const Placement& placement
   return record;
 }
 
-std::vector<map_format::SubmapRecord> make_submaps(const std::vector<Placement>& order, double submap_m) {
-  std::vector<map_format::SubmapRecord> submaps;
+std::vector<map_format::CubeRecord> make_cubes(const std::vector<Placement>& order, double cube_m) {
+  std::vector<map_format::CubeRecord> cubes;
   for (std::uint32_t i = 0; i < order.size(); ++i) {
     if (i == 0 || order[i].cell != order[i - 1].cell) {
-      const auto corner = [&](int axis) { return static_cast<float>(order[i].cell[axis] * submap_m); };
-      submaps.push_back({{corner(0), corner(1), corner(2)}, static_cast<float>(submap_m), i, 0});
+      const auto corner = [&](int axis) { return static_cast<float>(order[i].cell[axis] * cube_m); };
+      cubes.push_back({{corner(0), corner(1), corner(2)}, static_cast<float>(cube_m), i, 0});
     }
-    ++submaps.back().num_landmarks;
+    ++cubes.back().num_landmarks;
   }
-  return submaps;
+  return cubes;
 }
 
 // ---- the file
@@ -328,10 +328,10 @@ void add_wcs(const MapData& map, FileBuilder* file) {
 
 Result<std::vector<std::byte>> serialize_map(const MapData& map, const MapWriteOptions& options) {
   if (Status status = check_map(map, options); !status.is_ok()) return status;
-  const std::vector<Placement> order = order_landmarks(map, options.submap_m);
+  const std::vector<Placement> order = order_landmarks(map, options.cube_m);
   FileBuilder file;
   file.add(SectionId::kMeta, std::vector{make_meta(map)});
-  file.add(SectionId::kSubmaps, make_submaps(order, options.submap_m));
+  file.add(SectionId::kCubes, make_cubes(order, options.cube_m));
   add_landmarks(map, order, &file);
   add_keyframes(map, order, &file);
   add_words(map, &file);

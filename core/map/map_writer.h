@@ -15,10 +15,10 @@
 namespace camloc {
 
 struct MapWriteOptions {
-  double submap_m = 4.0;  ///< side of a sub-map's cube; 4 m give positions of 0.06 mm
+  double cube_m = 4.0;  ///< side of a cube; 4 m give positions of 0.06 mm
 };
 
-/// The bytes of the file. Landmarks are reordered by sub-map; keyframe lists follow. Deterministic. A camera name of more
+/// The bytes of the file. Landmarks are reordered by cube; keyframe lists follow. Deterministic. A camera name of more
 /// than 63 bytes is cut.
 /// Errors: kInvalid when the data contradict themselves (index out of range, no descriptor, non-finite, no landmark).
 [[nodiscard]] Result<std::vector<std::byte>> serialize_map(const MapData& map, const MapWriteOptions& options = {});

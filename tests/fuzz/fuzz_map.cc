@@ -32,10 +32,10 @@ void use(const MapView& view) {
   const MapInfo& info = view.info();
   std::uint64_t sum = 0;
   for (std::uint32_t i = 0; i < info.num_landmarks; ++i) {
-    require(view.submap_of(i) < info.num_submaps);
+    require(view.cube_of(i) < info.num_cubes);
     require(!view.landmark_descriptors(i).empty());
     for (const auto& d : view.landmark_descriptors(i)) sum += d.bits[3];
-    require(view.position_m(i).allFinite() || view.submaps()[view.submap_of(i)].extent_m > 1e30F);
+    require(view.position_m(i).allFinite() || view.cubes()[view.cube_of(i)].extent_m > 1e30F);
   }
   std::vector<std::uint32_t> list(info.max_keyframe_landmarks);
   for (std::uint32_t k = 0; k < info.num_keyframes; ++k) {

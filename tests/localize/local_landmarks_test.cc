@@ -63,7 +63,7 @@ TEST_P(LocalLandmarksInView, AreProjectedAndNoOthers) {
     camera.lens = LensModel::kBrownConrady;
     camera.distortion = {-0.1, 0.01, 0.001, -0.002, 0};
   }
-  const LocalLandmarksOptions options{.max_landmarks = 6000, .max_submaps = 1000};
+  const LocalLandmarksOptions options{.max_landmarks = 6000, .max_cubes = 1000};
   LocalLandmarks local(map, camera, options);
   std::map<std::uint32_t, ProjectedLandmark> projected;
   for (const auto& landmark : local.project(T_map_camera, 9.0F)) {
@@ -102,14 +102,14 @@ Rigid3 looking_in() {
 TEST(LocalLandmarks, KeepsTheMostObserved) {
   const MapView& map = *flat().view;
   const Intrinsics camera = sample_camera(640, 480).color;
-  LocalLandmarks all(map, camera, {.max_landmarks = 6000, .max_submaps = 1000});
+  LocalLandmarks all(map, camera, {.max_landmarks = 6000, .max_cubes = 1000});
   const auto everything = all.project(looking_in(), 5);
   std::set<std::int32_t> in_view;
   for (const auto& landmark : everything) in_view.insert(landmark.landmark);
   ASSERT_GT(in_view.size(), 60U);
   constexpr int kLimit = 40;
   ASSERT_LT(in_view.size(), 4U * kLimit) << "no more than are looked at before choosing";
-  LocalLandmarks some(map, camera, {.max_landmarks = kLimit, .max_submaps = 1000});
+  LocalLandmarks some(map, camera, {.max_landmarks = kLimit, .max_cubes = 1000});
   std::set<std::int32_t> kept;
   int fewest_kept = 255, most_dropped = 0;
   for (const auto& landmark : some.project(looking_in(), 5)) {
@@ -133,15 +133,15 @@ TEST(LocalLandmarks, EveryLimitHolds) {
   const auto count = [&](const LocalLandmarksOptions& options) {
     return LocalLandmarks(map, camera, options).project(looking_in(), 5).size();
   };
-  const std::size_t all = count({.max_landmarks = 6000, .max_submaps = 1000});
+  const std::size_t all = count({.max_landmarks = 6000, .max_cubes = 1000});
   EXPECT_EQ(count({.max_landmarks = 1}), 1U);
-  EXPECT_EQ(count({.max_landmarks = 6000, .max_submaps = 0}), 0U);
-  EXPECT_EQ(count({.max_landmarks = 6000, .max_submaps = 1000, .max_visited = 0}), 0U);
-  const std::size_t near = count({.max_landmarks = 6000, .max_submaps = 3}),
-                    half = count({.max_landmarks = 6000, .max_submaps = 1000, .max_visited = 1500});
+  EXPECT_EQ(count({.max_landmarks = 6000, .max_cubes = 0}), 0U);
+  EXPECT_EQ(count({.max_landmarks = 6000, .max_cubes = 1000, .max_visited = 0}), 0U);
+  const std::size_t near = count({.max_landmarks = 6000, .max_cubes = 3}),
+                    half = count({.max_landmarks = 6000, .max_cubes = 1000, .max_visited = 1500});
   EXPECT_LT(near, all);
   EXPECT_LT(half, all);
-  EXPECT_LT(count({.max_landmarks = 6000, .max_submaps = 1000, .max_visited = 60000, .max_range_m = 4}), all);
+  EXPECT_LT(count({.max_landmarks = 6000, .max_cubes = 1000, .max_visited = 60000, .max_range_m = 4}), all);
 }
 
 TEST(LocalLandmarks, AMappedViewIsSeenAgain) {

@@ -42,7 +42,7 @@ Unpacked unpacked(const std::vector<std::byte>& bytes) {
 void expect_same_bytes(const MapData& map, const MapWriteOptions& options = {}) {
   const std::vector<std::byte> bytes = packed(map, options);
   const Unpacked again = unpacked(bytes);
-  EXPECT_EQ(again.options.submap_m, options.submap_m);
+  EXPECT_EQ(again.options.cube_m, options.cube_m);
   EXPECT_EQ(again.map.landmarks.size(), map.landmarks.size());
   EXPECT_TRUE(packed(again.map, again.options) == bytes);
 }
@@ -65,7 +65,7 @@ TEST(MapUnpack, SameBytesWithoutWordsKeyframesAndDatum) {
 
 TEST(MapUnpack, SameBytesWithOtherCubes) {
   const MapData map = make_synthetic_map({.num_landmarks = 300, .side_m = 30});
-  for (const double submap_m : {0.1, 0.3, 1.7, 4.0, 12.5, 1000.0}) expect_same_bytes(map, {.submap_m = submap_m});
+  for (const double cube_m : {0.1, 0.3, 1.7, 4.0, 12.5, 1000.0}) expect_same_bytes(map, {.cube_m = cube_m});
 }
 
 // On the faces of the cubes, a bit beside them, and so far out that floats are coarser than the codes.

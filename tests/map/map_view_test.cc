@@ -174,10 +174,10 @@ TEST(MapViewOpen, RefusesImpossibleContentWithRightHashes) {
       {"pose sigma", [](auto* b) { poke(b, SectionId::kMeta, 408, -1.0); }},
       {"pyramid", [](auto* b) { poke(b, SectionId::kMeta, 424, kNan); }},
       {"pyramid", [](auto* b) { poke(b, SectionId::kMeta, 428, 1000U); }},
-      {"sub-map", [](auto* b) { poke(b, SectionId::kSubmaps, 0, kNan); }},
-      {"sub-map", [](auto* b) { poke(b, SectionId::kSubmaps, 12, 0.0F); }},
-      {"sub-maps", [](auto* b) { poke(b, SectionId::kSubmaps, 16, 1U); }},
-      {"sub-maps", [](auto* b) { poke(b, SectionId::kSubmaps, 20, 0xFFFFFFFFU); }},
+      {"cube", [](auto* b) { poke(b, SectionId::kCubes, 0, kNan); }},
+      {"cube", [](auto* b) { poke(b, SectionId::kCubes, 12, 0.0F); }},
+      {"cubes", [](auto* b) { poke(b, SectionId::kCubes, 16, 1U); }},
+      {"cubes", [](auto* b) { poke(b, SectionId::kCubes, 20, 0xFFFFFFFFU); }},
       {"without descriptor", [](auto* b) { poke(b, SectionId::kLandmarks, 13, std::uint8_t{0}); }},
       {"do not add up", [](auto* b) { poke(b, SectionId::kLandmarks, 13, std::uint8_t{9}); }},
       {"without pose", [](auto* b) { poke(b, SectionId::kKeyframes, 0, 3.0F); }},
@@ -258,14 +258,14 @@ std::uint64_t use_everything(const MapView& view) {
   std::uint64_t sum = view.is_damaged() ? 1 : 0;
   for (const auto& d : view.descriptors()) sum += d.bits[0] ^ d.bits[3];
   for (std::uint32_t i = 0; i < info.num_landmarks; ++i) {
-    const std::uint32_t submap = view.submap_of(i);
-    EXPECT_LT(submap, info.num_submaps);
+    const std::uint32_t cube = view.cube_of(i);
+    EXPECT_LT(cube, info.num_cubes);
     EXPECT_LE(view.first_descriptor(i) + view.num_descriptors(i), info.num_descriptors);
     for (const auto& d : view.landmark_descriptors(i)) sum += d.bits[1];
     const auto& record = view.landmarks()[i];
     EXPECT_NEAR(MapView::direction(record).norm(), 1, 1e-4);
     EXPECT_GT(MapView::reference_m(record.min_reference) + MapView::angle_rad(record) + MapView::view_cosine(record), -1.0F);
-    EXPECT_LE((view.position_m(i) - Eigen::Vector3f(view.submaps()[submap].origin_m.data())).maxCoeff(), 4.001F);
+    EXPECT_LE((view.position_m(i) - Eigen::Vector3f(view.cubes()[cube].origin_m.data())).maxCoeff(), 4.001F);
   }
   std::vector<std::uint32_t> list(info.max_keyframe_landmarks);
   for (std::uint32_t k = 0; k < info.num_keyframes; ++k) {

@@ -92,25 +92,25 @@ TEST(MapWriter, KeyframesFollowTheReorderedLandmarks) {
   }
 }
 
-TEST(MapWriter, SubmapsPartitionTheLandmarksByCube) {
+TEST(MapWriter, CubesPartitionTheLandmarks) {
   const TemporaryFolder folder;
   const MapData map = make_synthetic_map({.num_landmarks = 800, .side_m = 15});
-  const MapView view = open_written(map, folder, {.submap_m = 2.5});
+  const MapView view = open_written(map, folder, {.cube_m = 2.5});
   std::set<std::array<float, 3>> origins;
   std::uint32_t next = 0;
-  for (std::uint32_t s = 0; s < view.submaps().size(); ++s) {
-    const auto& submap = view.submaps()[s];
-    EXPECT_TRUE(origins.insert(submap.origin_m).second);
-    EXPECT_EQ(submap.extent_m, 2.5F);
-    EXPECT_EQ(submap.first_landmark, next);
-    next += submap.num_landmarks;
-    for (std::uint32_t i = submap.first_landmark; i < next; ++i) {
-      EXPECT_EQ(view.submap_of(i), s);
-      EXPECT_EQ(view.position_m(i), MapView::position_m(submap, view.landmarks()[i]));
+  for (std::uint32_t s = 0; s < view.cubes().size(); ++s) {
+    const auto& cube = view.cubes()[s];
+    EXPECT_TRUE(origins.insert(cube.origin_m).second);
+    EXPECT_EQ(cube.extent_m, 2.5F);
+    EXPECT_EQ(cube.first_landmark, next);
+    next += cube.num_landmarks;
+    for (std::uint32_t i = cube.first_landmark; i < next; ++i) {
+      EXPECT_EQ(view.cube_of(i), s);
+      EXPECT_EQ(view.position_m(i), MapView::position_m(cube, view.landmarks()[i]));
     }
   }
   EXPECT_EQ(next, 800U);
-  EXPECT_EQ(view.submaps().size(), view.info().num_submaps);
+  EXPECT_EQ(view.cubes().size(), view.info().num_cubes);
 }
 
 TEST(MapWriter, WordsAndGlobalsRoundTrip) {
@@ -220,7 +220,7 @@ TEST(MapWriter, RefusesContradictoryData) {
     EXPECT_EQ(bytes.status().code(), ErrorCode::kInvalid) << c.what;
     EXPECT_FALSE(bytes.status().message().empty());
   }
-  EXPECT_FALSE(serialize_map(make_synthetic_map(), {.submap_m = 0}).is_ok());
+  EXPECT_FALSE(serialize_map(make_synthetic_map(), {.cube_m = 0}).is_ok());
 }
 
 std::size_t num_files(const TemporaryFolder& folder) {

@@ -54,7 +54,7 @@ TEST(MapPipeline, AWalkBecomesAMapAndATrajectory) {
   EXPECT_EQ(summary.slam->counts.num_views, kFrames);
   EXPECT_EQ(summary.slam->counts.num_lost, 0U);
   EXPECT_EQ(summary.slam->num_resumed, 0U);
-  EXPECT_TRUE(summary.submaps.empty());
+  EXPECT_TRUE(summary.cubes.empty());
   EXPECT_EQ(summary.build.num_frames, kFrames);
   EXPECT_GT(summary.build.num_landmarks, 200U);
   EXPECT_TRUE(std::filesystem::exists(folder / "room.cmap"));
@@ -184,11 +184,11 @@ TEST(MapPipeline, SegmentsThatDoNotMeetAreMapsOfTheirOwn) {
   BuildSummary summary;
   const Status built = build(request, &summary);
   ASSERT_TRUE(built.is_ok()) << built.message();
-  ASSERT_EQ(summary.submaps.size(), 1U);
-  EXPECT_EQ(summary.submaps[0].map_path, folder / "room.2.cmap");
+  ASSERT_EQ(summary.cubes.size(), 1U);
+  EXPECT_EQ(summary.cubes[0].map_path, folder / "room.2.cmap");
   EXPECT_TRUE(std::filesystem::exists(folder / "room.2.cmap"));
   EXPECT_EQ(summary.slam->counts.num_segments, 2U);
-  EXPECT_EQ(summary.build.num_frames + summary.submaps[0].num_views + summary.slam->counts.num_lost, 70U);
+  EXPECT_EQ(summary.build.num_frames + summary.cubes[0].num_views + summary.slam->counts.num_lost, 70U);
 }
 
 TEST(FindFrames, CountsAndSelects) {

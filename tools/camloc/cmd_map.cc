@@ -78,7 +78,7 @@ void print_json(const MapView& map, double open_ms) {
                   {"descriptors", info.num_descriptors},
                   {"keyframes", info.num_keyframes},
                   {"words", info.num_words},
-                  {"submaps", info.num_submaps},
+                  {"cubes", info.num_cubes},
                   {"pose_sigma_m", info.pose_sigma_m},
                   {"pose_sigma_deg", info.pose_sigma_rad * 180.0 / std::numbers::pi},
                   {"camera", info.camera.name},
@@ -94,7 +94,7 @@ void print_table(const MapView& map, double open_ms) {
   std::printf("id           %016llx, format version %u\n", static_cast<unsigned long long>(info.map_id), info.version);
   std::printf("size         %.3f MB, %.1f bytes a landmark, opened in %.2f ms\n", 1e-6 * static_cast<double>(info.file_bytes),
               bytes_per_landmark(info), open_ms);
-  std::printf("landmarks    %u with %u descriptors in %u sub-maps\n", info.num_landmarks, info.num_descriptors, info.num_submaps);
+  std::printf("landmarks    %u with %u descriptors in %u cubes of coordinates\n", info.num_landmarks, info.num_descriptors, info.num_cubes);
   std::printf("keyframes    %u (the minimum set that covers all landmarks), %u words\n", info.num_keyframes, info.num_words);
   if (info.pose_sigma_m > 0) {
     std::printf("mapping      poses of the mapping are good to %.1f cm and %.2f deg per axis; none that is found in the map is better\n",

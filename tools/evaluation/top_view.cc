@@ -33,9 +33,9 @@ struct Projection {
 std::vector<Eigen::Vector3d> landmark_positions(const MapView* map) {
   std::vector<Eigen::Vector3d> points;
   if (map == nullptr) return points;
-  for (const auto& submap : map->submaps()) {
-    for (const auto& landmark : map->landmarks().subspan(submap.first_landmark, submap.num_landmarks)) {
-      points.push_back(MapView::position_m(submap, landmark).cast<double>());
+  for (const auto& cube : map->cubes()) {
+    for (const auto& landmark : map->landmarks().subspan(cube.first_landmark, cube.num_landmarks)) {
+      points.push_back(MapView::position_m(cube, landmark).cast<double>());
     }
   }
   return points;

@@ -28,10 +28,10 @@ struct MapPoints {
 
 MapPoints points_of(const MapView& map, std::uint32_t min_observations) {
   MapPoints points;
-  for (const auto& submap : map.submaps()) {
-    for (const auto& landmark : map.landmarks().subspan(submap.first_landmark, submap.num_landmarks)) {
+  for (const auto& cube : map.cubes()) {
+    for (const auto& landmark : map.landmarks().subspan(cube.first_landmark, cube.num_landmarks)) {
       if (landmark.num_observations < min_observations) continue;
-      points.landmarks.push_back(MapView::position_m(submap, landmark).cast<double>());
+      points.landmarks.push_back(MapView::position_m(cube, landmark).cast<double>());
     }
   }
   for (std::uint32_t i = 0; i < map.keyframes().size(); ++i) points.T_map_keyframe.push_back(map.keyframe_pose(i));
