@@ -70,8 +70,8 @@ void fill_pose(const Localization& localization, const PoseContext& context, pos
   message->reason_text = to_string(localization.reason);
   message->quality = static_cast<std::int8_t>(localization.has_pose ? std::clamp(localization.quality, 0, 100) : -1);
   message->num_features = clip(localization.num_features);
-  message->num_matches = clip(localization.num_matches);
-  message->num_inliers = clip(localization.num_inliers);
+  message->num_matches = clip(localization.evidence.num_matches);
+  message->num_inliers = clip(localization.evidence.num_inliers);
   message->reset_counter = clip(std::uint64_t{localization.reset_counter} + context.reset_offset);
   message->jump_m = localization.jump_m;
   for (std::size_t i = 0; i < localization.stage_ns.size(); ++i) message->latency_us[i] = clip(localization.stage_ns[i] / 1000);

@@ -8,7 +8,7 @@
 namespace camloc {
 
 void CalibrationMonitor::add(double focal_scale, double sigma) {
-  if (!(sigma < options_.max_sigma)) return;
+  if (!(sigma < numbers_.max_focal_sigma)) return;
   recent_[health_.num_frames % kWindow] = focal_scale;
   ++health_.num_frames;
   std::array<double, kWindow> sorted = recent_;
@@ -16,7 +16,7 @@ void CalibrationMonitor::add(double focal_scale, double sigma) {
   const auto middle = sorted.begin() + count / 2;
   std::nth_element(sorted.begin(), middle, sorted.begin() + count);
   health_.focal_scale = *middle;
-  health_.is_suspect = count >= options_.min_frames && std::abs(health_.focal_scale - 1.0) > options_.suspect_deviation;
+  health_.is_suspect = count >= numbers_.min_focal_frames && std::abs(health_.focal_scale - 1.0) > numbers_.suspect_focal_deviation;
 }
 
 }  // namespace camloc

@@ -9,24 +9,19 @@
 #include <cstdint>
 
 #include "core/localize/localization.h"
+#include "core/localize/localizer_numbers.h"
 
 namespace camloc {
 
-struct CalibrationMonitorOptions {
-  double suspect_deviation = 0.035;  ///< of the median from 1
-  std::uint32_t min_frames = 8;
-  double max_sigma = 0.03;  ///< less certain frames take no part
-};
-
 class CalibrationMonitor {
  public:
-  explicit CalibrationMonitor(const CalibrationMonitorOptions& options) : options_(options) {}
+  explicit CalibrationMonitor(const LocalizerNumbers& numbers) : numbers_(numbers) {}
   void add(double focal_scale, double sigma);
   [[nodiscard]] const CalibrationHealth& health() const { return health_; }
 
  private:
   static constexpr std::uint32_t kWindow = 31;
-  CalibrationMonitorOptions options_;
+  LocalizerNumbers numbers_;
   std::array<double, kWindow> recent_{};
   CalibrationHealth health_;
 };

@@ -7,7 +7,9 @@
 #include <array>
 #include <cstdint>
 
+#include "core/base/stage_timer.h"
 #include "core/geometry/rigid3.h"
+#include "core/registration/pose_evidence.h"
 
 namespace camloc {
 
@@ -41,9 +43,6 @@ enum class Reason : std::uint8_t {
 
 [[nodiscard]] const char* to_string(State state);
 [[nodiscard]] const char* to_string(Reason reason);
-
-enum class Stage : std::uint8_t { kExtract, kCandidates, kMatch, kEstimate, kVerify, kTotal };
-inline constexpr int kNumStages = 6;
 [[nodiscard]] const char* to_string(Stage stage);
 
 struct Localization {
@@ -53,18 +52,14 @@ struct Localization {
   Reason reason = Reason::kNotStarted;
   bool has_pose = false;  ///< T_map_camera is set (LOCALIZED, COASTING; COARSE: the candidate)
   Rigid3 T_map_camera;
-  Matrix6d covariance = Matrix6d::Zero();                                             ///< of pose_error(): metres, radians, axes of `map`
-  int quality = -1;                                                                   ///< 0..100, -1 when there is no pose
-  bool is_tracked = false;                                                            ///< found from the prediction, not by global search
-  std::uint32_t num_features = 0, num_visible = 0, num_matches = 0, num_inliers = 0;  ///< visible: landmarks that the pose puts in view
-  double inlier_ratio = 0;
-  double spread = 0;                ///< share of the image's 8 x 6 cells that hold an inlier
-  double margin = 1;                ///< 1 - inliers of the best rival place / inliers
-  double focal_scale = 1;           ///< true / assumed focal length as this frame sees it
-  double depth_agreement = 1;       ///< share of inliers with depth whose depth agrees
-  double map_depth_agreement = 1;   ///< share of landmarks in view that lie on the measured surface rather than in free space
-  std::uint32_t reset_counter = 0;  ///< grows with every global fix: poses before and after may differ by a jump
-  double jump_m = 0;                ///< size of that jump, 0 while tracking
+  Matrix6d covariance = Matrix6d::Zero();  ///< of pose_error(): metres, radians, axes of `map`
+  int quality = -1;                        ///< 0..100, -1 when there is no pose
+  bool is_tracked = false;                 ///< found from the prediction, not by global search
+  std::uint32_t num_features = 0;
+  PoseEvidence evidence;                            ///< of the pose, or of the best candidate for one; before motion and map are asked
+  double margin = 1;                                ///< 1 - inliers of the best rival place / inliers
+  std::uint32_t reset_counter = 0;                  ///< grows with every global fix: poses before and after may differ by a jump
+  double jump_m = 0;                                ///< size of that jump, 0 while tracking
   std::array<std::int64_t, kNumStages> stage_ns{};  ///< zero when no clock was given
 };
 

@@ -1,30 +1,22 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// The whole job is process(): observe the frame; for each proposer, cheapest first, examine what it proposes (solve each place, take
+// the best pose, verify it) and ask the gate whether it is to be believed; then report. Below it are those steps, in that order.
 #include "core/localize/localizer.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "core/localize/verification.h"
+#include "core/registration/rivals.h"
 
 namespace camloc {
 namespace {
 
-/// After this long without a verified pose a prediction is no better than a global search.
-constexpr std::int64_t kMaxTrackingGapNs = 1'000'000'000;
-/// For so long the last verified pose limits where the camera can be. Without that a stretch that looks alike at the other
-/// end of the corridor is taken for the real one right after a moment without features.
-constexpr std::int64_t kMotionMemoryNs = 5'000'000'000;
-/// A fix that contradicts it is believed once it has been found again and again for so long.
-constexpr std::int64_t kConfirmationNs = 1'000'000'000;
-constexpr std::int64_t kMaxConfirmationGapNs = 500'000'000;
-/// For so long a camera that was lost with its eyes open is not believed to be anywhere on thin evidence: after 5.5 s in a bare
-/// corridor of the synthetic building nine frames with about 30 inliers were taken for its twin 50 m away; true returns had 112
-/// and more.
-constexpr std::int64_t kLostMemoryNs = 60'000'000'000;
-/// For so long after places that look alike none of them is believed on thin evidence: in the synthetic building a bay was taken for
-/// its twin 3.6 m along the corridor right after two frames that could not tell them apart, because the rival was not found again.
-constexpr std::int64_t kAmbiguityMemoryNs = 1'000'000'000;
-/// A hypothesis with fewer inliers is not even a coarse place.
-constexpr std::uint32_t kMinCoarseInliers = 15;
+/// Descriptors of one place that are compared with the image.
+constexpr int kMaxCandidates = 8000;
+/// Sampling is seeded by the frame and the place: seeds of neighbouring frames do not meet.
+constexpr std::uint64_t kSeedsPerFrame = 8;
 
 /// What a candidate place may be off: metres and a good part of a turn. It is a hint for people, never a pose.
 Matrix6d coarse_uncertainty() {
@@ -40,51 +32,67 @@ LocalizerOptions with_pyramid_of(const MapView& map, LocalizerOptions options) {
   return options;
 }
 
-PoseEstimatorOptions estimator_options(const LocalizerOptions& options) {
-  PoseEstimatorOptions estimator;
-  estimator.refinement.use_depth = options.use_depth;
-  return estimator;
+MapLandmarksOptions landmark_options(const LocalizerNumbers& numbers) {
+  MapLandmarksOptions options;
+  options.max_landmarks = numbers.max_landmarks;
+  options.limits.max_range_m = numbers.max_range_m;
+  options.limits.view_angle_margin_rad = numbers.view_angle_margin_rad;
+  return options;
+}
+
+PoseSolverOptions solver_options(const LocalizerOptions& options) {
+  PoseSolverOptions solver;
+  solver.max_features = options.orb.num_features;
+  solver.max_candidates = kMaxCandidates;
+  solver.ransac_iterations = options.numbers.ransac_iterations;
+  solver.max_ransac_pairs = options.numbers.max_ransac_pairs;
+  solver.max_ransac_error_px = solver.max_error_px = options.numbers.max_error_px;
+  solver.guided_radius_px = options.numbers.guided_radius_px;
+  solver.use_depth = options.use_depth;
+  return solver;
 }
 
 }  // namespace
 
-Localizer::Localizer(const MapView& map, const RgbdCamera& camera, const LocalizerOptions& options)
+Localizer::Localizer(const MapView& map, const RgbdCamera& camera, const LocalizerOptions& options,
+                     std::span<const ProposerEntry> proposers)
     : map_(&map),
+      camera_(camera),
       options_(with_pyramid_of(map, options)),
       timer_(options_.now_ns),
-      observations_(camera, options_.orb, options_.use_depth),
-      estimator_(map, camera, options_.orb, estimator_options(options_), &timer_),
-      global_search_(map, options_.orb, GlobalSearchOptions{}, &timer_),
-      motion_(MotionModelOptions{}),
-      unconfirmed_(MotionModelOptions{}),
-      calibration_(CalibrationMonitorOptions{}),
-      focal_px_(camera.color.mean_focal_px()) {}
+      extractor_(camera, options_.orb, options_.use_depth),
+      landmarks_(map, camera.color, landmark_options(options_.numbers)),
+      solver_(camera, PyramidLevels(options_.orb.scale_factor, options_.orb.num_levels), solver_options(options_), &timer_),
+      list_(map.info().max_keyframe_landmarks),
+      visit_of_landmark_(map.landmarks().size(), 0),
+      gate_(options_.numbers, options_.use_tracking),
+      calibration_(options_.numbers) {
+  view_.reserve(static_cast<std::size_t>(options_.orb.num_features));
+  found_.reserve(2 * static_cast<std::size_t>(std::max(1, options_.numbers.max_places)));
+  for (const ProposerEntry& entry : proposers)
+    proposers_.push_back(entry.make({map_, &camera_, &options_.numbers, options_.orb.num_features}));
+}
 
 const Localization& Localizer::process(const Frame& frame) {
   begin(frame);
-  if (map_->is_damaged()) return decline(frame, {.reason = Reason::kMapDamaged});
-  if (!observations_.observe(frame)) return decline(frame, {.reason = Reason::kNoImage});
-  result_.num_features = static_cast<std::uint32_t>(observations_.size());
-  timer_.finish(Stage::kExtract);
-  if (observations_.size() < verification_.min_features) return decline(frame, {.reason = Reason::kFewFeatures});
+  if (const Reason unusable = observe(frame); unusable != Reason::kNone) return decline(frame, {.reason = unusable});
 
-  Candidate candidate = track(frame);
-  if (candidate.reason != Reason::kNone) candidate = search_globally(frame);
-  watch_calibration(candidate.hypothesis);
-  timer_.finish(Stage::kVerify);
+  Candidate candidate;
+  for (const auto& proposer : proposers_) {
+    const auto proposals = proposer->propose({frame.stamp_ns, &view_, &gate_});
+    timer_.finish(Stage::kCandidates);
+    candidate = examine(frame, proposals);
+    candidate.reason = gate_.judge(frame.stamp_ns, candidate);
+    if (candidate.reason != Reason::kNone) continue;
+    proposer->on_accepted();
+    break;
+  }
+  watch_calibration(candidate.evidence);
   return candidate.reason == Reason::kNone ? accept(frame, candidate) : decline(frame, candidate);
 }
 
-// Matches with another place ask for any focal length: only what could be a pose has a say.
-void Localizer::watch_calibration(const PoseHypothesis& hypothesis) {
-  if (!hypothesis.has_focal_scale || hypothesis.num_inliers < verification_.min_inliers) return;
-  calibration_.add(hypothesis.focal_scale, hypothesis.focal_scale_sigma);
-}
-
-void Localizer::reset() {
-  motion_.reset();
-  unconfirmed_.reset();
-  ambiguous_ns_.reset();
+void Localizer::hint(const PoseHint& hint) {
+  for (const auto& proposer : proposers_) proposer->on_hint(hint);
 }
 
 void Localizer::begin(const Frame& frame) {
@@ -94,111 +102,109 @@ void Localizer::begin(const Frame& frame) {
   result_.reset_counter = reset_counter;
   result_.sequence = frame.sequence;
   result_.stamp_ns = frame.stamp_ns;
-  const bool is_time_reversed = motion_.has_fix() && frame.stamp_ns <= motion_.last_stamp_ns();
-  if (!options_.use_tracking || is_time_reversed) reset();
+  gate_.begin(frame.stamp_ns);
 }
 
-Localizer::Candidate Localizer::track(const Frame& frame) {
-  Candidate candidate{.is_tracked = true};
-  if (!is_recent(frame.stamp_ns, kMaxTrackingGapNs)) return candidate;
-  const Rigid3 T_map_predicted = motion_.predict(frame.stamp_ns);
-  const Matrix6d uncertainty = motion_.predict_covariance(frame.stamp_ns);
-  const double turn_sigma_rad = std::sqrt(uncertainty.diagonal().tail<3>().maxCoeff());
-  const auto radius_px = static_cast<float>(std::clamp(10.0 + 2.0 * focal_px_ * turn_sigma_rad, 15.0, 0.15 * focal_px_));
-
-  const auto matches = estimator_.match_around(observations_, T_map_predicted, radius_px);
-  candidate.hypothesis = estimator_.from_matches(observations_, matches, frame.sequence);
-  if (candidate.hypothesis.is_found) candidate.hypothesis = estimator_.look_again(observations_, candidate.hypothesis);
-  candidate.reason = verify(candidate.hypothesis, candidate.margin, candidate.is_tracked, verification_);
-  if (candidate.reason == Reason::kNone && !fits_motion(frame, candidate.hypothesis)) candidate.reason = Reason::kImplausibleMotion;
-  return candidate;
+Reason Localizer::observe(const Frame& frame) {
+  if (map_->is_damaged()) return Reason::kMapDamaged;
+  if (!extractor_.has_image(frame)) return Reason::kNoImage;
+  extractor_.extract(frame, &view_);
+  solver_.begin(view_, extractor_.depth_of(frame));
+  result_.num_features = static_cast<std::uint32_t>(view_.size());
+  timer_.finish(Stage::kExtract);
+  return view_.size() < options_.numbers.min_features ? Reason::kFewFeatures : Reason::kNone;
 }
 
-Localizer::Candidate Localizer::search_globally(const Frame& frame) {
-  const GlobalSearchResult found = global_search_.search(observations_, estimator_, frame.sequence);
-  Candidate candidate{.hypothesis = found.best, .margin = found.margin, .is_tracked = false};
-  candidate.reason = found.has_candidates ? verify(found.best, found.margin, candidate.is_tracked, verification_) : Reason::kNoCandidates;
-  if (candidate.reason == Reason::kNone && !fits_motion(frame, found.best) && !is_confirmed(frame, found.best))
-    candidate.reason = Reason::kImplausibleMotion;
-  if (candidate.reason == Reason::kAmbiguous) ambiguous_ns_ = frame.stamp_ns;
-  if (candidate.reason == Reason::kNone && was_ambiguous(frame, found.best)) candidate.reason = Reason::kAmbiguous;
-  return candidate;
+// The pose with the most inliers; what else was found says how far it stands out.
+Candidate Localizer::examine(const Frame& frame, std::span<const Proposal> proposals) {
+  if (proposals.empty()) return {.reason = Reason::kNoCandidates};
+  proposals = proposals.first(std::min(proposals.size(), found_.capacity() / 2));
+  found_.clear();
+  for (std::size_t i = 0; i < proposals.size(); ++i) solve(proposals[i], frame.sequence * kSeedsPerFrame + i);
+  Candidate best{.is_continuation = proposals.front().is_continuation, .overrides_motion = proposals.front().overrides_motion};
+  for (const PoseEvidence& found : found_) {
+    if (!best.evidence.is_found || found.num_inliers > best.evidence.num_inliers) best.evidence = found;
+  }
+  best.margin = margin_of(found_, best.evidence, {options_.numbers.rival_distance_m, options_.numbers.rival_angle_rad});
+  best.reason = verify(best.evidence, best.margin, best.is_continuation, options_.numbers);
+  timer_.finish(Stage::kVerify);
+  return best;
 }
 
-// A handful of inliers on a repeated texture can be one tile off, and depth does not tell: such a pose must be where the
-// motion so far expects it. Strong evidence may contradict the prediction within what a camera can do. When the motion is
-// forgotten only strong evidence counts, until the loss is so long ago that the camera may have been carried anywhere.
-bool Localizer::fits_motion(const Frame& frame, const PoseHypothesis& hypothesis) const {
-  if (!is_recent(frame.stamp_ns, kLostMemoryNs)) return true;
-  const bool is_thin = hypothesis.num_inliers < verification_.strong_inliers;
-  if (is_thin && !is_recent(frame.stamp_ns, kMotionMemoryNs)) return false;
-  if (is_thin) return motion_.is_expected(frame.stamp_ns, hypothesis.T_map_camera, hypothesis.covariance);
-  return motion_.is_plausible(frame.stamp_ns, hypothesis.T_map_camera);
+void Localizer::solve(const Proposal& proposal, std::uint64_t seed) {
+  if (proposal.num_keyframes == 0) {
+    const auto matches = solver_.search_by_projection(&landmarks_, proposal.T_map_camera, proposal.radius_px);
+    return keep(solver_.solve_and_refine(&landmarks_, matches, seed));
+  }
+  gather_candidates(proposal);
+  const auto matches = solver_.match_candidates();
+  const PoseEvidence found = solver_.solve_and_refine(&landmarks_, matches, seed);
+  keep(found);
+  if (found.is_found && found.num_inliers < options_.numbers.thin_inliers)
+    keep(solver_.solve_and_refine(&landmarks_, matches, seed, &found.T_map_camera));
 }
 
-bool Localizer::is_confirmed(const Frame& frame, const PoseHypothesis& hypothesis) {
-  if (hypothesis.num_inliers < verification_.strong_inliers) return false;
-  const bool is_continued = unconfirmed_.has_fix() && frame.stamp_ns - unconfirmed_.last_stamp_ns() <= kMaxConfirmationGapNs &&
-                            unconfirmed_.is_plausible(frame.stamp_ns, hypothesis.T_map_camera);
-  if (!is_continued) unconfirmed_since_ns_ = frame.stamp_ns;
-  unconfirmed_.add_fix(frame.stamp_ns, hypothesis.T_map_camera, Matrix6d::Zero(), false);
-  return frame.stamp_ns - unconfirmed_since_ns_ >= kConfirmationNs;
+void Localizer::gather_candidates(const Proposal& place) {
+  CandidateSet& candidates = solver_.candidates();
+  candidates.clear();
+  ++visit_;
+  for (const std::uint32_t keyframe : place.places()) {
+    const std::size_t count = map_->keyframe_landmarks(keyframe, list_);
+    for (const std::uint32_t landmark : std::span(list_).first(count)) {
+      if (visit_of_landmark_[landmark] == visit_) continue;
+      visit_of_landmark_[landmark] = visit_;
+      const float angle_rad = MapView::angle_rad(map_->landmarks()[landmark]);
+      for (const Descriptor& descriptor : map_->landmark_descriptors(landmark)) {
+        if (!candidates.add(descriptor, static_cast<std::int32_t>(landmark), angle_rad)) return;
+      }
+    }
+  }
 }
 
-// Once the motion says little, places that looked alike must stay apart for a while before one of them is believed.
-bool Localizer::was_ambiguous(const Frame& frame, const PoseHypothesis& hypothesis) const {
-  if (hypothesis.num_inliers >= verification_.strong_inliers || is_recent(frame.stamp_ns, kMaxTrackingGapNs)) return false;
-  return ambiguous_ns_ && frame.stamp_ns - *ambiguous_ns_ <= kAmbiguityMemoryNs;
+void Localizer::keep(const PoseEvidence& found) {
+  if (found.is_found || found_.empty()) found_.push_back(found);
+}
+
+// Matches with another place ask for any focal length: only what could be a pose has a say.
+void Localizer::watch_calibration(const PoseEvidence& evidence) {
+  if (!evidence.has_focal_scale || evidence.num_inliers < options_.numbers.min_inliers) return;
+  calibration_.add(evidence.focal_scale, evidence.focal_scale_sigma);
 }
 
 const Localization& Localizer::accept(const Frame& frame, const Candidate& candidate) {
-  const PoseHypothesis& hypothesis = candidate.hypothesis;
   result_.state = State::kLocalized;
-  result_.reason = Reason::kNone;
   result_.has_pose = true;
-  result_.T_map_camera = hypothesis.T_map_camera;
-  result_.covariance = with_map_uncertainty(hypothesis.covariance);
-  result_.quality = quality_of(hypothesis, candidate.margin);
-  if (!candidate.is_tracked) {
-    ++result_.reset_counter;
-    if (motion_.has_fix()) result_.jump_m = (hypothesis.T_map_camera.translation - motion_.predict(frame.stamp_ns).translation).norm();
-  }
-  motion_.add_fix(frame.stamp_ns, hypothesis.T_map_camera, hypothesis.covariance, candidate.is_tracked);
-  unconfirmed_.reset();
-  return finish(candidate);
+  result_.T_map_camera = candidate.evidence.T_map_camera;
+  result_.covariance = with_map_uncertainty(candidate.evidence.covariance);
+  result_.quality = quality_of(candidate.evidence, candidate.margin);
+  if (!candidate.is_continuation) ++result_.reset_counter;
+  result_.jump_m = gate_.accept(frame.stamp_ns, candidate);
+  return report(candidate);
 }
 
 const Localization& Localizer::decline(const Frame& frame, const Candidate& candidate) {
-  result_.reason = candidate.reason;
   result_.state = State::kLost;
-  if (is_recent(frame.stamp_ns, options_.max_coast_ns)) {
+  if (const auto predicted = gate_.predict(frame.stamp_ns, options_.max_coast_ns)) {
     result_.state = State::kCoasting;
     result_.has_pose = true;
-    result_.T_map_camera = motion_.predict(frame.stamp_ns);
-    result_.covariance = with_map_uncertainty(motion_.predict_covariance(frame.stamp_ns));
+    result_.T_map_camera = predicted->T_map_camera;
+    result_.covariance = with_map_uncertainty(predicted->covariance);
     result_.quality = 0;
-  } else if (candidate.hypothesis.is_found && candidate.hypothesis.num_inliers >= kMinCoarseInliers) {
+  } else if (candidate.evidence.is_found && candidate.evidence.num_inliers >= options_.numbers.min_coarse_inliers) {
     result_.state = State::kCoarse;
     result_.has_pose = true;
-    result_.T_map_camera = candidate.hypothesis.T_map_camera;
-    result_.covariance = with_map_uncertainty(candidate.hypothesis.covariance) + coarse_uncertainty();
+    result_.T_map_camera = candidate.evidence.T_map_camera;
+    result_.covariance = with_map_uncertainty(candidate.evidence.covariance) + coarse_uncertainty();
     result_.quality = 0;
   }
-  return finish(candidate);
+  return report(candidate);
 }
 
-const Localization& Localizer::finish(const Candidate& candidate) {
-  const PoseHypothesis& hypothesis = candidate.hypothesis;
-  result_.is_tracked = candidate.is_tracked;
-  result_.num_visible = hypothesis.num_visible;
-  result_.num_matches = hypothesis.num_matches;
-  result_.num_inliers = hypothesis.num_inliers;
-  result_.inlier_ratio = hypothesis.inlier_ratio();
-  result_.spread = hypothesis.spread;
+const Localization& Localizer::report(const Candidate& candidate) {
+  result_.reason = candidate.reason;
+  result_.is_tracked = candidate.is_continuation;
+  result_.evidence = candidate.evidence;
   result_.margin = candidate.margin;
-  result_.focal_scale = hypothesis.focal_scale;
-  result_.depth_agreement = hypothesis.depth_agreement;
-  result_.map_depth_agreement = hypothesis.map_depth_agreement;
   timer_.finish(Stage::kVerify);
   result_.stage_ns = timer_.stop();
   return result_;
@@ -209,10 +215,6 @@ Matrix6d Localizer::with_map_uncertainty(const Matrix6d& covariance) const {
   total.diagonal().head<3>().array() += map_->info().pose_sigma_m * map_->info().pose_sigma_m;
   total.diagonal().tail<3>().array() += map_->info().pose_sigma_rad * map_->info().pose_sigma_rad;
   return total;
-}
-
-bool Localizer::is_recent(std::int64_t stamp_ns, std::int64_t max_age_ns) const {
-  return options_.use_tracking && motion_.has_fix() && stamp_ns - motion_.last_stamp_ns() <= max_age_ns;
 }
 
 }  // namespace camloc

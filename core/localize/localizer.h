@@ -6,20 +6,23 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <memory>
+#include <span>
+#include <vector>
 
 #include "core/base/frame.h"
+#include "core/base/stage_timer.h"
 #include "core/features/orb_extractor.h"
 #include "core/geometry/camera.h"
 #include "core/localize/calibration_monitor.h"
-#include "core/localize/global_search.h"
+#include "core/localize/gate.h"
 #include "core/localize/localization.h"
-#include "core/localize/motion_model.h"
-#include "core/localize/observations.h"
-#include "core/localize/pose_estimator.h"
-#include "core/localize/stage_timer.h"
-#include "core/localize/verification.h"
+#include "core/localize/localizer_numbers.h"
+#include "core/localize/pose_hint.h"
+#include "core/localize/proposer.h"
+#include "core/map/map_landmarks.h"
 #include "core/map/map_view.h"
+#include "core/registration/pose_solver.h"
 
 namespace camloc {
 
@@ -29,54 +32,53 @@ struct LocalizerOptions {
   bool use_depth = true;
   std::int64_t max_coast_ns = 500'000'000;  ///< COASTING ends this long after the last verified pose
   std::int64_t (*now_ns)() = nullptr;       ///< monotonic clock for stage times; core itself reads none
+  LocalizerNumbers numbers;
 };
 
 /// Not thread-safe. `map` must outlive the localizer. Allocates at construction only.
 class Localizer {
  public:
-  Localizer(const MapView& map, const RgbdCamera& camera, const LocalizerOptions& options);
+  Localizer(const MapView& map, const RgbdCamera& camera, const LocalizerOptions& options,
+            std::span<const ProposerEntry> proposers = proposer_table());
+  Localizer(const Localizer&) = delete;
+  Localizer& operator=(const Localizer&) = delete;
 
   /// The reference stays valid until the next call.
   const Localization& process(const Frame& frame);
+  /// The next frames are looked for there first; ignored unless valid.
+  void hint(const PoseHint& hint);
   /// Forgets the last pose.
-  void reset();
+  void reset() { gate_.reset(); }
   [[nodiscard]] const CalibrationHealth& calibration() const { return calibration_.health(); }
 
  private:
-  /// A hypothesis together with the verdict on it.
-  struct Candidate {
-    PoseHypothesis hypothesis{};
-    double margin = 1;
-    bool is_tracked = false;
-    Reason reason = Reason::kNotStarted;  ///< kNone: verified
-  };
-
   void begin(const Frame& frame);
-  [[nodiscard]] Candidate track(const Frame& frame);
-  [[nodiscard]] Candidate search_globally(const Frame& frame);
-  [[nodiscard]] bool fits_motion(const Frame& frame, const PoseHypothesis& hypothesis) const;
-  [[nodiscard]] bool is_confirmed(const Frame& frame, const PoseHypothesis& hypothesis);
-  [[nodiscard]] bool was_ambiguous(const Frame& frame, const PoseHypothesis& hypothesis) const;
-  void watch_calibration(const PoseHypothesis& hypothesis);
+  [[nodiscard]] Reason observe(const Frame& frame);
+  [[nodiscard]] Candidate examine(const Frame& frame, std::span<const Proposal> proposals);
+  void solve(const Proposal& proposal, std::uint64_t seed);
+  void gather_candidates(const Proposal& place);
+  void keep(const PoseEvidence& found);
+  void watch_calibration(const PoseEvidence& evidence);
   const Localization& accept(const Frame& frame, const Candidate& candidate);
   const Localization& decline(const Frame& frame, const Candidate& candidate);
-  const Localization& finish(const Candidate& candidate);
+  const Localization& report(const Candidate& candidate);
   [[nodiscard]] Matrix6d with_map_uncertainty(const Matrix6d& covariance) const;
-  [[nodiscard]] bool is_recent(std::int64_t stamp_ns, std::int64_t max_age_ns) const;
 
   const MapView* map_;
+  RgbdCamera camera_;
   LocalizerOptions options_;
   StageTimer timer_;
-  FrameObservations observations_;
-  PoseEstimator estimator_;
-  GlobalSearch global_search_;
-  MotionModel motion_;
-  MotionModel unconfirmed_;                   ///< the last fix that contradicts the motion so far
-  std::int64_t unconfirmed_since_ns_ = 0;     ///< when fixes that agree with it began
-  std::optional<std::int64_t> ambiguous_ns_;  ///< when another place last explained a frame nearly as well
+  ViewExtractor extractor_;
+  ViewFeatures view_;  ///< of the frame at hand
+  MapLandmarks landmarks_;
+  PoseSolver solver_;
+  std::vector<std::unique_ptr<Proposer>> proposers_;
+  std::vector<PoseEvidence> found_;               ///< for the proposals at hand
+  std::vector<std::uint32_t> list_;               ///< landmarks of one keyframe
+  std::vector<std::uint32_t> visit_of_landmark_;  ///< the visit_ at which a landmark became a candidate
+  std::uint32_t visit_ = 0;
+  Gate gate_;
   CalibrationMonitor calibration_;
-  VerificationOptions verification_;
-  double focal_px_;
   Localization result_;
 };
 

@@ -17,7 +17,7 @@ constexpr double kRotationSlack = 0.2;
 
 void MotionModel::add_fix(std::int64_t stamp_ns, const Rigid3& T_map_camera, const Matrix6d& covariance, bool is_continuous) {
   const std::int64_t elapsed_ns = stamp_ns - stamp_ns_;
-  has_velocity_ = is_continuous && has_fix_ && elapsed_ns > 0 && elapsed_ns <= options_.max_velocity_age_ns;
+  has_velocity_ = is_continuous && has_fix_ && elapsed_ns > 0 && seconds(elapsed_ns) <= numbers_.max_velocity_age_s;
   if (has_velocity_) {
     const Rigid3 T_last_now = T_map_camera_.inverse() * T_map_camera;
     velocity_camera_m_per_s_ = T_last_now.translation / seconds(elapsed_ns);
@@ -31,7 +31,7 @@ void MotionModel::add_fix(std::int64_t stamp_ns, const Rigid3& T_map_camera, con
 
 Rigid3 MotionModel::predict(std::int64_t stamp_ns) const {
   if (!has_velocity_) return T_map_camera_;
-  const double dt = std::min(seconds(stamp_ns - stamp_ns_), seconds(options_.max_velocity_age_ns));
+  const double dt = std::min(seconds(stamp_ns - stamp_ns_), numbers_.max_velocity_age_s);
   return T_map_camera_ * Rigid3{exp_so3(turn_camera_rad_per_s_ * dt), velocity_camera_m_per_s_ * dt};
 }
 
@@ -39,8 +39,8 @@ Matrix6d MotionModel::predict_covariance(std::int64_t stamp_ns) const {
   const double dt = std::max(0.0, seconds(stamp_ns - stamp_ns_));
   const double factor = has_velocity_ ? 1.0 : 3.0;
   Matrix6d covariance = covariance_;
-  const double position = factor * options_.speed_change_m_per_s * dt;
-  const double rotation = factor * options_.turn_change_rad_per_s * dt;
+  const double position = factor * numbers_.speed_change_m_per_s * dt;
+  const double rotation = factor * numbers_.turn_change_rad_per_s * dt;
   covariance.diagonal().head<3>().array() += position * position;
   covariance.diagonal().tail<3>().array() += rotation * rotation;
   return covariance;
@@ -50,7 +50,7 @@ bool MotionModel::is_expected(std::int64_t stamp_ns, const Rigid3& T_map_camera,
   if (!has_fix_) return true;
   const Vector6d error = pose_error(T_map_camera, predict(stamp_ns));
   const Vector6d variance = (predict_covariance(stamp_ns) + covariance).diagonal();
-  const double limit = options_.expected_sigmas * options_.expected_sigmas;
+  const double limit = numbers_.expected_sigmas * numbers_.expected_sigmas;
   return error.head<3>().squaredNorm() <= limit * variance.head<3>().maxCoeff() &&
          error.tail<3>().squaredNorm() <= limit * variance.tail<3>().maxCoeff();
 }
@@ -60,7 +60,7 @@ bool MotionModel::is_plausible(std::int64_t stamp_ns, const Rigid3& T_map_camera
   const double dt = std::abs(seconds(stamp_ns - stamp_ns_));
   const double distance = (T_map_camera.translation - T_map_camera_.translation).norm();
   const double angle = rotation_distance_rad(T_map_camera.rotation, T_map_camera_.rotation);
-  return distance <= options_.max_speed_m_per_s * dt + kPositionSlack && angle <= options_.max_turn_rad_per_s * dt + kRotationSlack;
+  return distance <= numbers_.max_speed_m_per_s * dt + kPositionSlack && angle <= numbers_.max_turn_rad_per_s * dt + kRotationSlack;
 }
 
 }  // namespace camloc

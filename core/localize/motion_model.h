@@ -8,23 +8,15 @@
 #include <cstdint>
 
 #include "core/geometry/rigid3.h"
+#include "core/localize/localizer_numbers.h"
 
 namespace camloc {
 
-struct MotionModelOptions {
-  double max_speed_m_per_s = 3.0;  ///< faster is implausible for a head or a robot indoors
-  double max_turn_rad_per_s = 7.0;
-  double speed_change_m_per_s = 0.4;  ///< standard deviation of what the velocity does until the next frame
-  double turn_change_rad_per_s = 0.5;
-  double expected_sigmas = 3.0;                    ///< is_expected(): of prediction and pose together, position and rotation each
-  std::int64_t max_velocity_age_ns = 500'000'000;  ///< two fixes farther apart say nothing about velocity
-};
-
 class MotionModel {
  public:
-  explicit MotionModel(const MotionModelOptions& options) : options_(options) {}
+  explicit MotionModel(const LocalizerNumbers& numbers) : numbers_(numbers) {}
 
-  void reset() { *this = MotionModel(options_); }
+  void reset() { *this = MotionModel(numbers_); }
   /// A verified pose. `is_continuous`: it follows the last one without a jump, so that both give a velocity.
   void add_fix(std::int64_t stamp_ns, const Rigid3& T_map_camera, const Matrix6d& covariance, bool is_continuous);
 
@@ -41,7 +33,7 @@ class MotionModel {
   [[nodiscard]] bool is_plausible(std::int64_t stamp_ns, const Rigid3& T_map_camera) const;
 
  private:
-  MotionModelOptions options_;
+  LocalizerNumbers numbers_;
   bool has_fix_ = false;
   bool has_velocity_ = false;
   std::int64_t stamp_ns_ = 0;

@@ -20,29 +20,14 @@ Retriever::Retriever(const MapView& map, int max_features)
   for (std::uint32_t word = 0; word < idf_.size(); ++word) idf_[word] = map.word_idf(word);
 }
 
-std::span<const RetrievedKeyframe> Retriever::retrieve(std::span<const Descriptor> descriptors, int count) {
-  ranked_.clear();
+std::span<const RankedKeyframe> Retriever::retrieve(std::span<const Descriptor> descriptors, int count) {
   if (word_counts_.empty() || count <= 0) return {};
-  count_words(descriptors.first(std::min(descriptors.size(), nearest_.size())));
+  count_words(descriptors.first(std::min(descriptors.size(), nearest_.size())), map_->words(), nearest_, word_counts_);
   const float squared_norm = accumulate_scores();
   if (!(squared_norm > 0)) return {};
-
   const float scale = 1.0F / (255.0F * std::sqrt(squared_norm));
-  for (std::uint32_t keyframe = 0; keyframe < scores_.size(); ++keyframe) {
-    if (scores_[keyframe] > 0) ranked_.push_back({keyframe, scores_[keyframe] * scale});
-  }
-  const auto is_better = [](const RetrievedKeyframe& a, const RetrievedKeyframe& b) {
-    return a.score != b.score ? a.score > b.score : a.keyframe < b.keyframe;
-  };
-  const std::size_t num_best = std::min(ranked_.size(), static_cast<std::size_t>(count));
-  std::partial_sort(ranked_.begin(), ranked_.begin() + static_cast<std::ptrdiff_t>(num_best), ranked_.end(), is_better);
-  return std::span<const RetrievedKeyframe>(ranked_).first(num_best);
-}
-
-void Retriever::count_words(std::span<const Descriptor> descriptors) {
-  std::fill(word_counts_.begin(), word_counts_.end(), 0U);
-  nearest_descriptors(descriptors, map_->words(), nearest_.data());
-  for (std::size_t i = 0; i < descriptors.size(); ++i) ++word_counts_[nearest_[i].index];
+  for (float& score : scores_) score *= scale;
+  return rank_keyframes(scores_, count, &ranked_);
 }
 
 /// Fills scores_ with the inner products and returns the squared norm of the image's vector.

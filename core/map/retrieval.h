@@ -12,25 +12,20 @@
 #include "core/features/descriptor.h"
 #include "core/features/hamming.h"
 #include "core/map/map_view.h"
+#include "core/registration/tfidf.h"
 
 namespace camloc {
-
-struct RetrievedKeyframe {
-  std::uint32_t keyframe = 0;
-  float score = 0;  ///< cosine of the two tf-idf vectors, 0..1 up to the 8 bits of the weights; larger is more alike
-};
 
 /// Not thread-safe; allocates at construction only. The map must outlive it.
 class Retriever {
  public:
   /// Features of an image beyond `max_features` are ignored.
   Retriever(const MapView& map, int max_features);
-  /// The `count` best keyframes, best first, fewer when fewer share a word; ties by keyframe index. The same features
+  /// The `count` best keyframes, best first, fewer when fewer share a word. Scores are exact up to the 8 bits of the weights. The same features
   /// give the same bits. Valid until the next call.
-  std::span<const RetrievedKeyframe> retrieve(std::span<const Descriptor> descriptors, int count);
+  std::span<const RankedKeyframe> retrieve(std::span<const Descriptor> descriptors, int count);
 
  private:
-  void count_words(std::span<const Descriptor> descriptors);
   float accumulate_scores();
 
   const MapView* map_;
@@ -38,7 +33,7 @@ class Retriever {
   std::vector<float> idf_;                  ///< per word
   std::vector<std::uint32_t> word_counts_;  ///< per word: features of the image that fell on it
   std::vector<float> scores_;               ///< per keyframe
-  std::vector<RetrievedKeyframe> ranked_;
+  std::vector<RankedKeyframe> ranked_;
 };
 
 }  // namespace camloc

@@ -4,104 +4,76 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <bitset>
 #include <cmath>
 #include <limits>
 
 #include "core/features/hamming.h"
-#include "core/geometry/pnp_ransac.h"
 #include "core/geometry/pose_jacobian.h"
+#include "core/map/keyframe_view.h"
+#include "core/map/map_unpack.h"
 #include "core/map/retrieval.h"
+#include "core/registration/image_cells.h"
+#include "core/registration/pose_solver.h"
+#include "core/registration/rivals.h"
 
 namespace camloc {
 namespace {
 
-constexpr int kSpreadColumns = 8, kSpreadRows = 6;
-constexpr double kMinDepthM = 0.05;
 constexpr int kMaxPairs = 1000;
 
-/// A landmark as a keyframe sees it.
-struct SeenLandmark {
-  std::uint32_t landmark = 0;
-  Eigen::Vector3d position_m;  ///< in `map`
-  Eigen::Vector3d p_camera;
-  double sigma_px = 1;          ///< of its keypoint
-  double position_sigma_m = 0;  ///< of the landmark itself
-  bool is_shared = false;       ///< other frames saw it, too
-  int cell = 0;                 ///< of the image
+/// A keyframe as a query made of its own landmarks.
+struct Query {
+  KeyframeView of;
+  std::vector<std::uint8_t> is_shared;  ///< of each landmark: other frames saw it, too
 };
 
-struct View {
-  Rigid3 T_map_camera;
-  std::vector<SeenLandmark> landmarks;  ///< ascending
-  std::vector<Descriptor> descriptors;  ///< the first of each
-};
-
-double keypoint_sigma_px(const MapView& map, const map_format::LandmarkRecord& record, double distance_m, double pixel_sigma_px) {
-  const MapInfo& info = map.info();
-  const double reference_m =
-      std::sqrt(static_cast<double>(MapView::reference_m(record.min_reference)) * MapView::reference_m(record.max_reference));
-  const double scale = static_cast<double>(info.orb_scale_factor);
-  const double level = std::log(reference_m / distance_m) / std::log(scale);
-  return pixel_sigma_px * std::pow(scale, std::clamp(level, 0.0, static_cast<double>(info.orb_num_levels) - 1));
+std::vector<Query> make_queries(const MapData& map, const LocalizabilityOptions& options) {
+  std::vector<Query> queries(map.keyframes.size());
+  for (std::uint32_t k = 0; k < queries.size(); ++k) {
+    queries[k].of = view_of_keyframe(map, k);
+    for (const std::uint32_t landmark : queries[k].of.landmarks)
+      queries[k].is_shared.push_back(map.landmarks[landmark].num_observations >= options.min_observations ? 1 : 0);
+  }
+  return queries;
 }
 
-View make_view(const MapView& map, std::uint32_t keyframe, const LocalizabilityOptions& options, std::vector<std::uint32_t>* buffer) {
-  const Intrinsics& color = map.info().camera.color;
-  View view{map.keyframe_pose(keyframe), {}, {}};
-  const Rigid3 T_camera_map = view.T_map_camera.inverse();
-  const std::size_t count = map.keyframe_landmarks(keyframe, *buffer);
-  for (const std::uint32_t landmark : std::span(*buffer).first(count)) {
-    if (landmark >= map.landmarks().size()) continue;
-    const auto& record = map.landmarks()[landmark];
-    SeenLandmark seen;
-    seen.landmark = landmark;
-    seen.position_m = map.position_m(landmark).cast<double>();
-    seen.p_camera = T_camera_map * seen.position_m;
-    if (!(seen.p_camera.z() > kMinDepthM)) continue;
-    const Eigen::Vector2d pixel = color.project(seen.p_camera);
-    if (!(pixel.x() >= -0.5 && pixel.y() >= -0.5 && pixel.x() < color.width - 0.5 && pixel.y() < color.height - 0.5)) continue;
-    seen.cell = static_cast<int>((pixel.y() + 0.5) * kSpreadRows / color.height) * kSpreadColumns +
-                static_cast<int>((pixel.x() + 0.5) * kSpreadColumns / color.width);
-    seen.sigma_px = keypoint_sigma_px(map, record, seen.p_camera.norm(), options.pixel_sigma_px);
-    seen.position_sigma_m = 1e-3 * record.position_sigma_mm;
-    seen.is_shared = record.num_observations >= options.min_observations;
-    view.landmarks.push_back(seen);
-    view.descriptors.push_back(map.landmark_descriptors(landmark).front());
+double spread_of(const Query& query, const Intrinsics& color) {
+  ImageCells cells(color.width, color.height);
+  for (std::size_t i = 0; i < query.is_shared.size(); ++i) {
+    const Keypoint& keypoint = query.of.view.features.keypoints[i];
+    if (query.is_shared[i] != 0) cells.add(keypoint.u, keypoint.v);
   }
-  return view;
-}
-
-double spread_of(const View& view) {
-  std::bitset<kSpreadColumns * kSpreadRows> occupied;
-  for (const SeenLandmark& seen : view.landmarks) {
-    if (seen.is_shared) occupied.set(static_cast<std::size_t>(seen.cell));
-  }
-  return static_cast<double>(occupied.count()) / static_cast<double>(occupied.size());
+  return cells.share();
 }
 
 /// Information of the pose (camera axes, see pose_jacobian.h) from reprojection and depth of the landmarks that are found again.
-Matrix6d expected_information(const View& view, const RgbdCamera& camera, const LocalizabilityOptions& options) {
-  const double focal_px = camera.color.mean_focal_px();
+Matrix6d expected_information(const Query& query, const MapData& map, const LocalizabilityOptions& options) {
+  const PyramidLevels levels(map.orb_scale_factor, static_cast<int>(map.orb_num_levels));
+  const double focal_px = map.camera.color.mean_focal_px();
+  const Rigid3 T_camera_map = query.of.view.T_map_camera.inverse();
   Matrix6d information = Matrix6d::Zero();
-  for (const SeenLandmark& seen : view.landmarks) {
-    if (!seen.is_shared) continue;
-    const double z = seen.p_camera.z(), u = seen.p_camera.x() / z, v = seen.p_camera.y() / z;
-    const PointJacobian J = point_jacobian(u, v, z);
-    const double sigma_image = std::hypot(seen.sigma_px / focal_px, seen.position_sigma_m / z);
+  for (std::size_t i = 0; i < query.is_shared.size(); ++i) {
+    if (query.is_shared[i] == 0) continue;
+    const MapLandmark& landmark = map.landmarks[query.of.landmarks[i]];
+    const Eigen::Vector2f at = query.of.view.normalized[i];
+    const double z = (T_camera_map * landmark.position_m.cast<double>()).z();
+    const PointJacobian J = point_jacobian(at.x(), at.y(), z);
+    const double sigma_px = levels.sigma_px(query.of.view.features.keypoints[i].level);
+    const double sigma_image = std::hypot(sigma_px / focal_px, landmark.position_sigma_m / z);
     information += (J.u * J.u.transpose() + J.v * J.v.transpose()) * (options.repeatability / (sigma_image * sigma_image));
-    if (z < camera.min_depth_m || z > camera.max_depth_m) continue;
-    const double sigma_depth = std::hypot(camera.depth_noise.sigma_m(z), seen.position_sigma_m);
+    if (query.of.view.depth_m[i] == 0) continue;
+    const double sigma_depth = std::hypot(map.camera.depth_noise.sigma_m(z), landmark.position_sigma_m);
     information += J.z * J.z.transpose() * (options.repeatability / (sigma_depth * sigma_depth));
   }
   return information;
 }
 
-void assess_precision(const View& view, const MapInfo& info, const LocalizabilityOptions& options, KeyframeLocalizability* result) {
-  for (const SeenLandmark& seen : view.landmarks) result->num_landmarks += seen.is_shared ? 1 : 0;
-  result->spread = spread_of(view);
+void assess_precision(const Query& query, const MapData& map, const MapInfo& info, const LocalizabilityOptions& options,
+                      KeyframeLocalizability* result) {
+  result->num_landmarks = static_cast<std::uint32_t>(std::count(query.is_shared.begin(), query.is_shared.end(), std::uint8_t{1}));
+  result->spread = spread_of(query, map.camera.color);
   result->position_sigma_m = result->rotation_sigma_rad = std::numeric_limits<double>::infinity();
-  const Eigen::LDLT<Matrix6d> ldlt(expected_information(view, info.camera, options));
+  const Eigen::LDLT<Matrix6d> ldlt(expected_information(query, map, options));
   if (ldlt.info() != Eigen::Success || !(ldlt.rcond() > 1e-14)) return;
   const Matrix6d covariance = ldlt.solve(Matrix6d::Identity());
   const auto worst = [](const Eigen::Matrix3d& block) {
@@ -111,42 +83,66 @@ void assess_precision(const View& view, const MapInfo& info, const Localizabilit
   result->rotation_sigma_rad = std::hypot(std::sqrt(worst(covariance.bottomRightCorner<3, 3>())), info.pose_sigma_rad);
 }
 
-double common_share(const View& a, const View& b) {
+double common_share(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
   std::size_t common = 0;
-  for (std::size_t i = 0, k = 0; i < a.landmarks.size() && k < b.landmarks.size();) {
-    const std::uint32_t left = a.landmarks[i].landmark, right = b.landmarks[k].landmark;
+  for (std::size_t i = 0, k = 0; i < a.size() && k < b.size();) {
+    const std::uint32_t left = a[i], right = b[k];
     common += left == right ? 1 : 0;
     i += left <= right ? 1 : 0;
     k += right <= left ? 1 : 0;
   }
-  return static_cast<double>(common) / static_cast<double>(std::max<std::size_t>(1, std::min(a.landmarks.size(), b.landmarks.size())));
+  return static_cast<double>(common) / static_cast<double>(std::max<std::size_t>(1, std::min(a.size(), b.size())));
 }
 
-bool is_other_place(const View& a, const View& b, const LocalizabilityOptions& options) {
-  const double distance_m = (a.T_map_camera.translation - b.T_map_camera.translation).norm();
-  const double turn_rad = rotation_distance_rad(a.T_map_camera.rotation, b.T_map_camera.rotation);
-  return (distance_m > options.rival_distance_m || turn_rad > options.rival_turn_rad) && common_share(a, b) <= options.max_common_share;
+bool is_other_place(const KeyframeView& a, const KeyframeView& b, const LocalizabilityOptions& options) {
+  return are_rivals(a.view.T_map_camera, b.view.T_map_camera, {options.rival_distance_m, options.rival_turn_rad}) &&
+         common_share(a.landmarks, b.landmarks) <= options.max_common_share;
+}
+
+/// Where the landmarks of a map are, for poses from matches that are known already.
+class MapPositions final : public LandmarkSource {
+ public:
+  explicit MapPositions(const MapData& map) : map_(&map) {}
+  [[nodiscard]] std::span<const ProjectedLandmark> project(const Rigid3&, float) override { return {}; }
+  [[nodiscard]] std::span<const Descriptor> descriptors() const override { return {}; }
+  [[nodiscard]] Eigen::Vector3f position_m(std::int32_t i) const override {
+    return map_->landmarks[static_cast<std::size_t>(i)].position_m;
+  }
+
+ private:
+  const MapData* map_;
+};
+
+PoseSolverOptions solver_options(const LocalizabilityOptions& options, int max_features) {
+  PoseSolverOptions solver;
+  solver.max_features = max_features;
+  solver.max_ransac_pairs = kMaxPairs;
+  solver.max_ransac_error_px = options.max_error_px;
+  solver.gathers_evidence = false;
+  return solver;
 }
 
 /// Compares a view with other places. Buffers are kept from call to call.
 class RivalFinder {
  public:
-  RivalFinder(const MapView& map, const std::vector<View>& views, const LocalizabilityOptions& options)
-      : map_(&map), views_(&views), options_(options), pairs_(kMaxPairs), ransac_(ransac_options(options)) {
-    std::size_t most = 0;
-    for (const View& view : views) most = std::max(most, view.descriptors.size());
-    retriever_.emplace(map, static_cast<int>(most));
-    forward_.resize(most);
-    backward_.resize(most);
-  }
+  RivalFinder(const MapView& map, const MapData& data, const std::vector<Query>& queries, const LocalizabilityOptions& options)
+      : positions_(data),
+        queries_(&queries),
+        options_(options),
+        most_(most_features(queries)),
+        retriever_(map, most_),
+        forward_(static_cast<std::size_t>(most_)),
+        backward_(static_cast<std::size_t>(most_)),
+        solver_(data.camera, PyramidLevels(data.orb_scale_factor, static_cast<int>(data.orb_num_levels)), solver_options(options, most_)) {}
 
   std::optional<RivalPlace> find(std::uint32_t keyframe) {
-    const View& view = (*views_)[keyframe];
+    const KeyframeView& here = (*queries_)[keyframe].of;
+    solver_.begin(here.view);
     std::optional<RivalPlace> worst;
     int num_compared = 0;
-    for (const RetrievedKeyframe& retrieved : retriever_->retrieve(view.descriptors, static_cast<int>(views_->size()))) {
-      if (!is_other_place(view, (*views_)[retrieved.keyframe], options_)) continue;
-      const RivalPlace rival = compare(view, retrieved.keyframe, keyframe);
+    for (const RankedKeyframe& retrieved : retriever_.retrieve(here.view.features.descriptors, static_cast<int>(queries_->size()))) {
+      if (!is_other_place(here, (*queries_)[retrieved.keyframe].of, options_)) continue;
+      const RivalPlace rival = compare(here, retrieved.keyframe, keyframe);
       if (!worst || rival.num_inliers > worst->num_inliers ||
           (rival.num_inliers == worst->num_inliers && rival.matched_share > worst->matched_share)) {
         worst = rival;
@@ -157,48 +153,39 @@ class RivalFinder {
   }
 
  private:
-  static PnpRansacOptions ransac_options(const LocalizabilityOptions& options) {
-    PnpRansacOptions ransac;
-    ransac.max_error_px = options.max_error_px;
-    ransac.max_pairs = kMaxPairs;
-    return ransac;
+  static int most_features(const std::vector<Query>& queries) {
+    std::size_t most = 1;
+    for (const Query& query : queries) most = std::max(most, query.of.view.size());
+    return static_cast<int>(most);
   }
 
-  RivalPlace compare(const View& view, std::uint32_t rival_keyframe, std::uint64_t seed) {
-    const View& rival = (*views_)[rival_keyframe];
-    nearest_descriptors(view.descriptors, rival.descriptors, forward_.data());
-    nearest_descriptors(rival.descriptors, view.descriptors, backward_.data());
-    pairs_.clear();
-    RivalPlace place{rival_keyframe, 0, 0, 0};
-    for (std::size_t i = 0; i < view.landmarks.size(); ++i) {
+  RivalPlace compare(const KeyframeView& here, std::uint32_t rival_keyframe, std::uint64_t seed) {
+    const KeyframeView& there = (*queries_)[rival_keyframe].of;
+    nearest_descriptors(here.view.features.descriptors, there.view.features.descriptors, forward_.data());
+    nearest_descriptors(there.view.features.descriptors, here.view.features.descriptors, backward_.data());
+    matches_.clear();
+    for (std::size_t i = 0; i < here.landmarks.size(); ++i) {
       const NearestDescriptor& nearest = forward_[i];
       if (nearest.distance > options_.max_match_distance || backward_[nearest.index].index != i) continue;
-      const SeenLandmark& here = view.landmarks[i];
-      const SeenLandmark& there = rival.landmarks[nearest.index];
-      if ((here.position_m - there.position_m).norm() < options_.same_point_m) continue;
-      ++place.num_matches;
-      add_pair(here, there, nearest.distance);
+      const auto landmark = static_cast<std::int32_t>(there.landmarks[nearest.index]);
+      const Eigen::Vector3f apart = positions_.position_m(static_cast<std::int32_t>(here.landmarks[i])) - positions_.position_m(landmark);
+      if (apart.norm() < options_.same_point_m) continue;
+      matches_.push_back({.feature = static_cast<std::int32_t>(i), .landmark = landmark, .distance = nearest.distance});
     }
-    place.matched_share = static_cast<double>(place.num_matches) / static_cast<double>(std::max<std::size_t>(1, view.landmarks.size()));
-    pairs_.sort_by_rank();
-    const PnpRansacResult pose = ransac_.estimate(pairs_, map_->info().camera.color.mean_focal_px(), seed);
-    if (pose.is_found) place.num_inliers = static_cast<std::uint32_t>(pose.num_inliers);
+    RivalPlace place{rival_keyframe, 0, static_cast<std::uint32_t>(matches_.size()), 0};
+    place.matched_share = static_cast<double>(matches_.size()) / static_cast<double>(std::max<std::size_t>(1, here.landmarks.size()));
+    place.num_inliers = solver_.solve(positions_, matches_, seed).num_inliers;
     return place;
   }
 
-  void add_pair(const SeenLandmark& here, const SeenLandmark& there, int distance) {
-    const Eigen::Vector3f p = here.p_camera.cast<float>(), q = there.position_m.cast<float>();
-    pairs_.add(p.x() / p.z(), p.y() / p.z(), q.x(), q.y(), q.z(), p.z(), static_cast<float>(here.sigma_px), static_cast<float>(distance),
-               static_cast<std::int32_t>(here.landmark), static_cast<std::int32_t>(there.landmark));
-  }
-
-  const MapView* map_;
-  const std::vector<View>* views_;
+  MapPositions positions_;
+  const std::vector<Query>* queries_;
   LocalizabilityOptions options_;
-  std::optional<Retriever> retriever_;
+  int most_;
+  Retriever retriever_;
   std::vector<NearestDescriptor> forward_, backward_;
-  Correspondences pairs_;
-  PnpRansac ransac_;
+  std::vector<Match> matches_;
+  PoseSolver solver_;
 };
 
 FixWeakness weakness_of(const KeyframeLocalizability& place, const LocalizabilityOptions& options) {
@@ -215,14 +202,13 @@ bool is_look_alike(const KeyframeLocalizability& place, const LocalizabilityOpti
 }  // namespace
 
 std::vector<KeyframeLocalizability> assess_localizability(const MapView& map, const LocalizabilityOptions& options) {
-  std::vector<std::uint32_t> buffer(map.info().max_keyframe_landmarks);
-  std::vector<View> views;
-  for (std::uint32_t k = 0; k < map.keyframes().size(); ++k) views.push_back(make_view(map, k, options, &buffer));
-  RivalFinder rivals(map, views, options);
-  std::vector<KeyframeLocalizability> places(views.size());
-  for (std::uint32_t k = 0; k < views.size(); ++k) {
+  const MapData data = unpack_map(map);
+  const std::vector<Query> queries = make_queries(data, options);
+  RivalFinder rivals(map, data, queries, options);
+  std::vector<KeyframeLocalizability> places(queries.size());
+  for (std::uint32_t k = 0; k < queries.size(); ++k) {
     KeyframeLocalizability& place = places[k];
-    assess_precision(views[k], map.info(), options, &place);
+    assess_precision(queries[k], data, map.info(), options, &place);
     place.rival = rivals.find(k);
     place.weakness = weakness_of(place, options);
     if (place.weakness != FixWeakness::kNone)

@@ -34,7 +34,6 @@ struct LocalizabilityOptions {
   std::uint32_t min_landmarks = 100;   ///< a fifth of them found again are the 20 inliers that the localizer asks for
   double min_spread = 0.25;            ///< of the image's cells that hold one
   double max_position_sigma_m = 0.05;  ///< expected, largest axis
-  double pixel_sigma_px = 1.0;         ///< on pyramid level 0; grows with the level
 
   double rival_distance_m = 3.0;   ///< another place is at least this far away
   double rival_turn_rad = 1.047;   ///< or turned by this, and

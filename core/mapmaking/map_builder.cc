@@ -36,7 +36,7 @@ struct MapBuilder::Impl {
         options(build_options),
         extractor(camera, options.orb),
         fusion(camera.color, camera.depth_noise, fusion_options(options)),
-        consistency(camera, consistency_options(options)) {}
+        consistency(camera, PyramidLevels(options.orb.scale_factor, options.orb.num_levels), consistency_options(options)) {}
 
   RgbdCamera camera;
   MapBuildOptions options;
@@ -57,7 +57,8 @@ Status MapBuilder::add_frame(const Frame& frame, const Rigid3& T_map_camera) {
     ++impl_->report.num_frames_skipped;
     return status;
   }
-  ViewFeatures view = impl_->extractor.extract(frame);
+  ViewFeatures view;
+  impl_->extractor.extract(frame, &view);
   view.T_map_camera = T_map_camera;
   add_view(view);
   return Status::ok();

@@ -8,65 +8,46 @@
 
 #include "core/base/mix_bits.h"
 #include "core/base/order_statistics.h"
-#include "core/features/matcher.h"
-#include "core/geometry/correspondences.h"
-#include "core/geometry/pnp_ransac.h"
-#include "core/geometry/pose_refinement.h"
+#include "core/registration/pose_solver.h"
 
 namespace camloc {
 namespace {
 
 constexpr double kMinInlierRatio = 0.3;
 
-/// Registers one view to another: the depth points of `from` are the map, the pixels of `to` are the query.
-class Registration {
- public:
-  Registration(const RgbdCamera& camera, const PoseConsistencyOptions& options)
-      : focal_px_(camera.color.mean_focal_px()),
-        min_inliers_(options.min_inliers),
-        capacity_(static_cast<std::size_t>(options.max_features)),
-        candidates_(capacity_),
-        matcher_(CandidateMatcherOptions{.max_distance = 64, .max_ratio = 0.85}, options.max_features, capacity_),
-        pairs_(capacity_),
-        ransac_(PnpRansacOptions{.max_error_px = 4.0, .max_pairs = options.max_features}) {
-    refinement_.depth_noise = camera.depth_noise;
-  }
+PoseSolverOptions solver_options(const PoseConsistencyOptions& options) {
+  PoseSolverOptions solver;
+  solver.max_features = solver.max_candidates = solver.max_ransac_pairs = options.max_features;
+  solver.candidate_ratio = 0.85;
+  solver.min_inliers = options.min_inliers;
+  solver.gathers_evidence = false;
+  return solver;
+}
 
-  /// T_from_to and its covariance; false when the views do not register.
-  bool run(const ViewFeatures& from, const ViewFeatures& to, std::uint64_t seed, PoseRefinementResult* result) {
-    candidates_.clear();
-    for (std::size_t i = 0; i < from.features.size(); ++i) {
-      if (from.depth_m[i] > 0)
-        candidates_.add(from.features.descriptors[i], static_cast<std::int32_t>(i), from.features.keypoints[i].angle_rad);
-    }
-    pairs_.clear();
-    for (const Match& match : matcher_.match(to.features, candidates_)) add_pair(from, to, match);
-    pairs_.sort_by_rank();
-    const PnpRansacResult found = ransac_.estimate(pairs_, focal_px_, seed);
-    if (!found.is_found || found.num_inliers < min_inliers_) return false;
-    *result = refine_pose(pairs_, found.T_map_camera, focal_px_, refinement_, nullptr);
-    return result->is_converged && result->num_inliers >= min_inliers_ &&
-           result->num_inliers >= kMinInlierRatio * static_cast<double>(pairs_.size());
+/// The points that a view measured, in its own camera: what another view is registered to.
+class ViewPoints final : public LandmarkSource {
+ public:
+  explicit ViewPoints(const ViewFeatures& view) : view_(&view) {}
+  [[nodiscard]] std::span<const ProjectedLandmark> project(const Rigid3&, float) override { return {}; }
+  [[nodiscard]] std::span<const Descriptor> descriptors() const override { return view_->features.descriptors; }
+  [[nodiscard]] Eigen::Vector3f position_m(std::int32_t i) const override {
+    return view_->point_camera(static_cast<std::size_t>(i)).cast<float>();
   }
 
  private:
-  void add_pair(const ViewFeatures& from, const ViewFeatures& to, const Match& match) {
-    const auto f = static_cast<std::size_t>(match.feature), l = static_cast<std::size_t>(match.landmark);
-    const float z = from.depth_m[l];
-    const float sigma_px = std::pow(1.2F, static_cast<float>(to.features.keypoints[f].level));
-    pairs_.add(to.normalized[f].x(), to.normalized[f].y(), z * from.normalized[l].x(), z * from.normalized[l].y(), z, to.depth_m[f],
-               sigma_px, match.distance, match.feature, match.landmark);
-  }
-
-  double focal_px_;
-  int min_inliers_;
-  std::size_t capacity_;
-  CandidateSet candidates_;
-  CandidateMatcher matcher_;
-  Correspondences pairs_;
-  PnpRansac ransac_;
-  PoseRefinementOptions refinement_;
+  const ViewFeatures* view_;
 };
+
+/// T_from_to and its covariance, from the depth points of one and the pixels of the other.
+PoseEvidence register_views(const ViewFeatures& from, const ViewFeatures& to, std::uint64_t seed, PoseSolver* solver) {
+  solver->candidates().clear();
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if (from.depth_m[i] > 0)
+      solver->candidates().add(from.features.descriptors[i], static_cast<std::int32_t>(i), from.features.keypoints[i].angle_rad);
+  }
+  solver->begin(to);
+  return solver->solve(ViewPoints(from), solver->match_candidates(), seed);
+}
 
 double median_normalized_square(const std::vector<double>& errors, const std::vector<double>& variances, double added_variance) {
   std::vector<double> values;
@@ -89,7 +70,8 @@ double excess_sigma(const std::vector<double>& errors, const std::vector<double>
   return 0.5 * (low + high);
 }
 
-PoseConsistency::PoseConsistency(const RgbdCamera& camera, const PoseConsistencyOptions& options) : camera_(camera), options_(options) {}
+PoseConsistency::PoseConsistency(const RgbdCamera& camera, const PyramidLevels& levels, const PoseConsistencyOptions& options)
+    : camera_(camera), levels_(levels), options_(options) {}
 
 // Keeps every stride-th view; when the store is full, every second of those goes and the stride doubles.
 void PoseConsistency::add_view(const ViewFeatures& view) {
@@ -121,14 +103,15 @@ std::vector<PoseConsistency::Pair> PoseConsistency::candidate_pairs() const {
 
 PoseConsistencyEstimate PoseConsistency::estimate() const {
   PoseConsistencyEstimate result;
-  Registration registration(camera_, options_);
+  PoseSolver solver(camera_, levels_, solver_options(options_));
   std::vector<double> errors_m, variances_m2, errors_rad, variances_rad2;
   const std::vector<Pair> pairs = candidate_pairs();
   for (std::size_t k = 0; k < pairs.size() && k < options_.max_attempts && result.num_pairs < options_.max_pairs; ++k) {
     const ViewFeatures& from = views_[pairs[k].from];
     const ViewFeatures& to = views_[pairs[k].to];
-    PoseRefinementResult seen;
-    if (!registration.run(from, to, k, &seen)) continue;
+    const PoseEvidence seen = register_views(from, to, k, &solver);
+    if (!seen.is_found || seen.num_inliers < static_cast<std::uint32_t>(options_.min_inliers) || seen.inlier_ratio() < kMinInlierRatio)
+      continue;
     const Vector6d error = pose_error(from.T_map_camera.inverse() * to.T_map_camera, seen.T_map_camera);
     for (int axis = 0; axis < 3; ++axis) {
       errors_m.push_back(error[axis]);

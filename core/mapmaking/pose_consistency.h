@@ -11,6 +11,7 @@
 
 #include "core/geometry/camera.h"
 #include "core/mapmaking/landmark_fusion.h"
+#include "core/registration/keypoint_noise.h"
 
 namespace camloc {
 
@@ -33,7 +34,7 @@ struct PoseConsistencyEstimate {
 /// Not thread-safe. The same views in the same order give the same bits.
 class PoseConsistency {
  public:
-  PoseConsistency(const RgbdCamera& camera, const PoseConsistencyOptions& options);
+  PoseConsistency(const RgbdCamera& camera, const PyramidLevels& levels, const PoseConsistencyOptions& options);
   void add_view(const ViewFeatures& view);
   [[nodiscard]] PoseConsistencyEstimate estimate() const;
 
@@ -45,6 +46,7 @@ class PoseConsistency {
   [[nodiscard]] std::vector<Pair> candidate_pairs() const;
 
   RgbdCamera camera_;
+  PyramidLevels levels_;
   PoseConsistencyOptions options_;
   std::uint64_t num_added_ = 0, stride_ = 1;
   std::vector<ViewFeatures> views_;

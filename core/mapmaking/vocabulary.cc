@@ -11,6 +11,7 @@
 
 #include "core/base/mix_bits.h"
 #include "core/features/hamming.h"
+#include "core/registration/tfidf.h"
 
 namespace camloc {
 namespace {
@@ -130,10 +131,6 @@ std::vector<Descriptor> train_vocabulary(std::span<const Descriptor> descriptors
   }
   remove_duplicates(&words);
   return words;
-}
-
-double inverse_document_frequency(std::size_t num_keyframes, std::size_t num_with_word) {
-  return std::log(1.0 + static_cast<double>(num_keyframes) / static_cast<double>(std::max<std::size_t>(num_with_word, 1)));
 }
 
 void build_inverted_file(MapData* map) {

@@ -21,9 +21,6 @@ namespace camloc {
 /// At most `num_words` words, all different. Deterministic; seeded by k-means++ (Arthur and Vassilvitskii, 2007).
 [[nodiscard]] std::vector<Descriptor> train_vocabulary(std::span<const Descriptor> descriptors, int num_words, int max_iterations = 8);
 
-/// log(1 + keyframes / keyframes with the word): never zero, so that a word seen everywhere still counts a little.
-[[nodiscard]] double inverse_document_frequency(std::size_t num_keyframes, std::size_t num_with_word);
-
 /// Fills map.inverted_file from landmarks, keyframes and words. The weight of a word in a keyframe is its number of
 /// descriptors there times its inverse document frequency; a keyframe's weights are scaled to an L2 norm of 255 and rounded
 /// into 1..255.

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/merge/keyframe_view.h"
+#include "core/map/keyframe_view.h"
 
 namespace camloc {
 namespace {
@@ -21,12 +21,6 @@ std::size_t longest_list(const MapData& map) {
   return longest;
 }
 
-RegistrationOptions registration_options(std::size_t max_features) {
-  RegistrationOptions registration;
-  registration.max_features = static_cast<int>(max_features);
-  return registration;
-}
-
 double distance_between(const Rigid3& a, const Rigid3& b) {
   return (a.translation - b.translation).norm() + kMetresPerRadian * rotation_distance_rad(a.rotation, b.rotation);
 }
@@ -38,8 +32,10 @@ class MapRegistration {
         b_(b),
         options_(options),
         retriever_(a, static_cast<int>(longest_list(b))),
-        registration_(b.camera, b.orb_scale_factor, registration_options(longest_list(b))),
-        neighbours_(find_covisible_keyframes(a_data, options.min_shared)) {}
+        solver_(b.camera, PyramidLevels(b.orb_scale_factor, static_cast<int>(b.orb_num_levels)),
+                mapping_solver_options(static_cast<int>(longest_list(b)))),
+        neighbours_(find_covisible_keyframes(a_data, options.min_shared)),
+        place_(b.camera.color, PyramidLevels(a_data.orb_scale_factor, static_cast<int>(a_data.orb_num_levels))) {}
 
   [[nodiscard]] Result<std::vector<KeyframeFix>> run(const MapMergeProgress& progress, MapRegistrationReport* report);
 
@@ -58,7 +54,7 @@ class MapRegistration {
   const MapData& b_;
   MapRegistrationOptions options_;
   Retriever retriever_;
-  ViewRegistration registration_;
+  PoseSolver solver_;
   std::vector<std::vector<SharedLandmarks>> neighbours_;  ///< of A's keyframes
   LandmarkSet place_;
 };
@@ -108,15 +104,18 @@ std::vector<std::uint32_t> MapRegistration::surroundings_of(std::uint32_t place)
 }
 
 void MapRegistration::assign_place(const std::vector<std::uint32_t>& keyframes) {
-  std::vector<std::uint32_t> landmarks;
+  place_.clear();
   std::vector<std::uint8_t> is_in(a_.landmarks.size(), 0);
   for (const std::uint32_t k : keyframes) {
     for (const std::uint32_t i : a_.keyframes[k].landmarks) {
-      if (is_in[i] == 0 && landmarks.size() < options_.max_place_landmarks) landmarks.push_back(i);
+      const MapLandmark& landmark = a_.landmarks[i];
+      if (is_in[i] == 0 && place_.size() < options_.max_place_landmarks) {
+        place_.add({i, landmark.position_m.cast<double>(), landmark.direction.cast<double>(), landmark.min_reference_m,
+                    landmark.max_reference_m, landmark.angle_rad, landmark.descriptors});
+      }
       is_in[i] = 1;
     }
   }
-  place_.assign(a_, b_.camera.color, landmarks);
 }
 
 std::optional<KeyframeFix> MapRegistration::find_anywhere(std::uint32_t keyframe) {
@@ -125,22 +124,22 @@ std::optional<KeyframeFix> MapRegistration::find_anywhere(std::uint32_t keyframe
   std::vector<std::uint8_t> is_covered(a_.keyframes.size(), 0);
   std::uint32_t num_tried = 0;
   const auto retrieved = retriever_.retrieve(query.view.features.descriptors, static_cast<int>(options_.num_retrieved));
-  for (const RetrievedKeyframe& place : retrieved) {
+  for (const RankedKeyframe& place : retrieved) {
     if (is_covered[place.keyframe] != 0) continue;
     if (num_tried++ == options_.num_candidates) break;
     const std::vector<std::uint32_t> keyframes = surroundings_of(place.keyframe);
     for (const std::uint32_t k : keyframes) is_covered[k] = 1;
     assign_place(keyframes);
-    Registration found = registration_.unguided(query.view, &place_, keyframe);
+    Registration found = register_anywhere(query.view, keyframe, &place_, &solver_);
     if (found.is_found) candidates.push_back(std::move(found));
   }
   const auto best = std::max_element(candidates.begin(), candidates.end(),
-                                     [](const Registration& i, const Registration& j) { return i.num_inliers() < j.num_inliers(); });
+                                     [](const Registration& i, const Registration& j) { return i.num_inliers < j.num_inliers; });
   if (best == candidates.end() || !is_convincing(*best, options_.place)) return std::nullopt;
   const bool has_rival =
-      std::any_of(candidates.begin(), candidates.end(), [&](const Registration& other) { return is_rival(other, *best, options_.place); });
+      std::any_of(candidates.begin(), candidates.end(), [&](const Registration& other) { return is_strong_rival(other, *best); });
   if (has_rival) return std::nullopt;
-  return KeyframeFix{keyframe, best->T_map_camera, best->covariance, best->num_inliers()};
+  return KeyframeFix{keyframe, best->T_map_camera, best->covariance, best->num_inliers};
 }
 
 std::optional<KeyframeFix> MapRegistration::find_around(std::uint32_t keyframe, const Rigid3& T_a_camera_predicted) {
@@ -156,9 +155,9 @@ std::optional<KeyframeFix> MapRegistration::find_around(std::uint32_t keyframe, 
   if (keyframes.empty()) return std::nullopt;
   assign_place(keyframes);
   const Registration found =
-      registration_.guided(view_of_keyframe(b_, keyframe).view, &place_, T_a_camera_predicted, options_.guided_radius_px, keyframe);
+      register_near(view_of_keyframe(b_, keyframe).view, T_a_camera_predicted, options_.guided_radius_px, keyframe, &place_, &solver_);
   if (!is_convincing(found, options_.place)) return std::nullopt;
-  return KeyframeFix{keyframe, found.T_map_camera, found.covariance, found.num_inliers()};
+  return KeyframeFix{keyframe, found.T_map_camera, found.covariance, found.num_inliers};
 }
 
 const KeyframeFix& MapRegistration::nearest_fix(const std::vector<KeyframeFix>& fixes, std::uint32_t keyframe) const {

@@ -17,8 +17,8 @@
 #include "core/map/map_data.h"
 #include "core/map/map_view.h"
 #include "core/map/retrieval.h"
-#include "core/slam/landmark_set.h"
-#include "core/slam/view_registration.h"
+#include "core/registration/landmark_set.h"
+#include "core/registration/view_registration.h"
 
 namespace camloc {
 
@@ -44,7 +44,7 @@ struct KeyframeFix {
   std::uint32_t keyframe = 0;
   Rigid3 T_a_camera;
   Matrix6d covariance = Matrix6d::Identity();  ///< of pose_error(), axes of A
-  int num_inliers = 0;
+  std::uint32_t num_inliers = 0;
 };
 
 struct MapRegistrationReport {

@@ -11,12 +11,32 @@ std::string size_text(int width, int height) { return std::to_string(width) + "x
 
 }  // namespace
 
-ViewExtractor::ViewExtractor(const RgbdCamera& camera, const OrbOptions& orb)
-    : camera_(camera), extractor_(camera.color.width, camera.color.height, orb), rays_(camera.color), depth_lookup_(camera) {}
+void ViewFeatures::clear() {
+  T_map_camera = Rigid3{};
+  features.keypoints.clear();
+  features.descriptors.clear();
+  normalized.clear();
+  depth_m.clear();
+  patches.clear();
+}
+
+void ViewFeatures::reserve(std::size_t num_features) {
+  features.keypoints.reserve(num_features);
+  features.descriptors.reserve(num_features);
+  normalized.reserve(num_features);
+  depth_m.reserve(num_features);
+}
+
+ViewExtractor::ViewExtractor(const RgbdCamera& camera, const OrbOptions& orb, bool use_depth)
+    : camera_(camera),
+      use_depth_(use_depth),
+      extractor_(camera.color.width, camera.color.height, orb),
+      rays_(camera.color),
+      depth_lookup_(camera) {}
 
 Status ViewExtractor::check(const Frame& frame) const {
   const std::string what = "frame " + std::to_string(frame.sequence);
-  if (frame.gray.width != camera_.color.width || frame.gray.height != camera_.color.height || frame.gray.empty()) {
+  if (!has_image(frame)) {
     return {ErrorCode::kInvalid, what + ": colour image is " + size_text(frame.gray.width, frame.gray.height) + " but camera '" +
                                      camera_.name + "' has " + size_text(camera_.color.width, camera_.color.height)};
   }
@@ -28,21 +48,28 @@ Status ViewExtractor::check(const Frame& frame) const {
   return Status::ok();
 }
 
-ViewFeatures ViewExtractor::extract(const Frame& frame) {
-  ViewFeatures view;
-  view.stamp_ns = frame.stamp_ns;
-  view.features = extractor_.extract(frame.gray);
-  view.normalized.reserve(view.size());
-  view.depth_m.reserve(view.size());
-  for (const Keypoint& keypoint : view.features.keypoints) {
-    view.normalized.push_back(rays_.undistort(keypoint.u, keypoint.v));
-    view.depth_m.push_back(depth_lookup_.depth_at(frame.depth, keypoint.u, keypoint.v));
+bool ViewExtractor::has_image(const Frame& frame) const {
+  return !frame.gray.empty() && frame.gray.width == camera_.color.width && frame.gray.height == camera_.color.height;
+}
+
+MeasuredDepth ViewExtractor::depth_of(const Frame& frame) const {
+  return !use_depth_ || frame.depth.empty() ? MeasuredDepth{} : MeasuredDepth{&depth_lookup_, frame.depth};
+}
+
+void ViewExtractor::extract(const Frame& frame, ViewFeatures* view) {
+  view->clear();
+  view->stamp_ns = frame.stamp_ns;
+  view->features = extractor_.extract(frame.gray);
+  const MeasuredDepth depth = depth_of(frame);
+  for (const Keypoint& keypoint : view->features.keypoints) {
+    view->normalized.push_back(rays_.undistort(keypoint.u, keypoint.v));
+    view->depth_m.push_back(depth.at(keypoint.u, keypoint.v));
   }
-  return view;
 }
 
 ViewFeatures ViewExtractor::extract_with_patches(const Frame& frame) {
-  ViewFeatures view = extract(frame);
+  ViewFeatures view;
+  extract(frame, &view);
   extractor_.copy_patches(&view.patches);
   return view;
 }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// One view as map building sees it: features, where they point, how far they are, and where
-// it is asked for the pixels around each. The images are gone after this.
+// A frame as measurements: its features, where they point, how far they are, and where it is asked for the pixels around each. The
+// image is not needed after this.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,7 +20,7 @@
 
 namespace camloc {
 
-/// Features of one view. All vectors have the same length, but for `patches`, which may be empty.
+/// Features of one frame. All vectors have the same length, but for `patches`, which may be empty.
 struct ViewFeatures {
   Rigid3 T_map_camera;
   std::int64_t stamp_ns = 0;
@@ -35,22 +35,38 @@ struct ViewFeatures {
     const double z = depth_m[i];
     return {z * normalized[i].x(), z * normalized[i].y(), z};
   }
+  void clear();
+  void reserve(std::size_t num_features);
 };
 
-/// Makes views of frames. Not thread-safe.
+/// The depth image beside a frame's features, for pixels that are no feature. Empty without one; the image must still be there.
+struct MeasuredDepth {
+  const DepthLookup* lookup = nullptr;
+  ImageView<std::uint16_t> image;
+
+  /// Metres along the optical axis of the colour camera, 0 = none.
+  [[nodiscard]] float at(float u, float v) const { return lookup == nullptr ? 0.0F : lookup->depth_at(image, u, v); }
+};
+
+/// Makes them of frames. Not thread-safe.
 class ViewExtractor {
  public:
-  ViewExtractor(const RgbdCamera& camera, const OrbOptions& orb);
+  /// Without `use_depth` the depth image is not looked at.
+  ViewExtractor(const RgbdCamera& camera, const OrbOptions& orb, bool use_depth = true);
 
   /// kInvalid when an image size does not fit the camera or there is no depth image; the message names the frame.
   [[nodiscard]] Status check(const Frame& frame) const;
-  /// Features of a frame that passed check(), with an unset pose.
-  [[nodiscard]] ViewFeatures extract(const Frame& frame);
+  /// Is there an image, of the camera's size?
+  [[nodiscard]] bool has_image(const Frame& frame) const;
+  /// Features of a frame that has_image(), with an unset pose. Allocates nothing where `view` has the capacity.
+  void extract(const Frame& frame, ViewFeatures* view);
   /// The same with the pixels around each feature.
   [[nodiscard]] ViewFeatures extract_with_patches(const Frame& frame);
+  [[nodiscard]] MeasuredDepth depth_of(const Frame& frame) const;
 
  private:
   RgbdCamera camera_;
+  bool use_depth_;
   OrbExtractor extractor_;
   UndistortionTable rays_;
   DepthLookup depth_lookup_;

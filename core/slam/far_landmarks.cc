@@ -32,7 +32,7 @@ double error_sigmas(const SlamMap& map, const ViewFeatures& view, std::uint32_t 
   const Eigen::Vector3d p_camera = view.T_map_camera.inverse() * p_map;
   if (p_camera.z() < 0.1) return 1e9;
   const Eigen::Vector2d error = p_camera.head<2>() / p_camera.z() - view.normalized[feature].cast<double>();
-  return error.norm() * map.camera().color.mean_focal_px() / map.sigma_px(view.features.keypoints[feature].level);
+  return error.norm() * map.camera().color.mean_focal_px() / map.levels().sigma_px(view.features.keypoints[feature].level);
 }
 
 bool is_sound(const FarLandmarkOptions& options, const SlamMap& map, const ViewFeatures& a, std::uint32_t feature_a, const ViewFeatures& b,
@@ -42,8 +42,8 @@ bool is_sound(const FarLandmarkOptions& options, const SlamMap& map, const ViewF
   if (!(distance < options.max_distance_m) || to_a.cross(to_b).norm() < std::sin(options.min_parallax_rad) * to_a.norm() * to_b.norm())
     return false;
   // The same corner is seen at a size that fits the two distances.
-  const double ratio = to_a.norm() * map.scale_of_level(a.features.keypoints[feature_a].level) /
-                       (to_b.norm() * map.scale_of_level(b.features.keypoints[feature_b].level));
+  const double ratio = to_a.norm() * map.levels().scale(a.features.keypoints[feature_a].level) /
+                       (to_b.norm() * map.levels().scale(b.features.keypoints[feature_b].level));
   if (ratio > 1.6 || ratio < 1 / 1.6) return false;
   return error_sigmas(map, a, feature_a, p_map) <= options.max_error_sigmas &&
          error_sigmas(map, b, feature_b, p_map) <= options.max_error_sigmas;

@@ -16,9 +16,9 @@ constexpr int kMaxFuseDistance = 50;
 }  // namespace
 
 std::uint32_t insert_keyframe(std::uint64_t frame, std::uint32_t segment, const ViewFeatures& view,
-                              const std::vector<RegisteredPair>& tracked, SlamMap* map) {
+                              const std::vector<LandmarkObservation>& tracked, SlamMap* map) {
   const std::uint32_t keyframe = map->add_keyframe(frame, segment, view);
-  for (const RegisteredPair& pair : tracked) {
+  for (const LandmarkObservation& pair : tracked) {
     const std::int32_t landmark = map->resolve(pair.landmark);
     if (landmark == kNoLandmark) continue;
     map->add_sighting(static_cast<std::uint32_t>(landmark), {keyframe, pair.feature});
@@ -31,11 +31,12 @@ std::uint32_t insert_keyframe(std::uint64_t frame, std::uint32_t segment, const 
   return keyframe;
 }
 
-int fuse_into_keyframe(LandmarkSet* landmarks, std::uint32_t keyframe, float radius_px, ViewRegistration* registration, SlamMap* map) {
+int fuse_into_keyframe(LandmarkSet* landmarks, std::uint32_t keyframe, float radius_px, PoseSolver* solver, SlamMap* map) {
   const ViewFeatures& view = map->keyframe(keyframe).view;
   const Rigid3 T_camera_map = view.T_map_camera.inverse();
   int num_fused = 0;
-  for (const Match& match : registration->matches_around(view, landmarks, view.T_map_camera, radius_px)) {
+  solver->begin(view);
+  for (const Match& match : solver->search_by_projection(landmarks, view.T_map_camera, radius_px)) {
     if (match.distance > kMaxFuseDistance) continue;
     const auto feature = static_cast<std::uint32_t>(match.feature);
     const std::int32_t into = map->resolve(landmarks->id(static_cast<std::size_t>(match.landmark)));
@@ -56,12 +57,12 @@ int fuse_into_keyframe(LandmarkSet* landmarks, std::uint32_t keyframe, float rad
   return num_fused;
 }
 
-void fuse_with_neighbours(std::uint32_t keyframe, std::size_t num_neighbours, ViewRegistration* registration, SlamMap* map) {
-  LandmarkSet own;
-  own.assign(*map, std::array{keyframe}, map->keyframe(keyframe).view.size());
+void fuse_with_neighbours(std::uint32_t keyframe, std::size_t num_neighbours, PoseSolver* solver, SlamMap* map) {
+  LandmarkSet own = map->empty_landmark_set();
+  map->collect_landmarks(std::array{keyframe}, map->keyframe(keyframe).view.size(), &own);
   const auto neighbours = map->covisible(keyframe, 20);
   for (std::size_t i = 0; i < std::min(num_neighbours, neighbours.size()); ++i)
-    fuse_into_keyframe(&own, neighbours[i].keyframe, kFuseRadiusPx, registration, map);
+    fuse_into_keyframe(&own, neighbours[i].keyframe, kFuseRadiusPx, solver, map);
 }
 
 }  // namespace camloc

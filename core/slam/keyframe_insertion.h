@@ -8,21 +8,21 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/slam/landmark_set.h"
+#include "core/registration/landmark_set.h"
+#include "core/registration/view_registration.h"
 #include "core/slam/slam_map.h"
-#include "core/slam/view_registration.h"
 
 namespace camloc {
 
 /// Adds the keyframe with its pose and everything it sees; `tracked` may be empty (the first of a segment).
 std::uint32_t insert_keyframe(std::uint64_t frame, std::uint32_t segment, const ViewFeatures& view,
-                              const std::vector<RegisteredPair>& tracked, SlamMap* map);
+                              const std::vector<LandmarkObservation>& tracked, SlamMap* map);
 
 /// Looks for landmarks of `landmarks` in a keyframe, within `radius_px` of their projection and at their depth: sightings are
 /// added, and a landmark that turns out to be the same point as one of the set becomes that one. Returns how many did.
-int fuse_into_keyframe(LandmarkSet* landmarks, std::uint32_t keyframe, float radius_px, ViewRegistration* registration, SlamMap* map);
+int fuse_into_keyframe(LandmarkSet* landmarks, std::uint32_t keyframe, float radius_px, PoseSolver* solver, SlamMap* map);
 
 /// Shows the landmarks of a keyframe to its best neighbours.
-void fuse_with_neighbours(std::uint32_t keyframe, std::size_t num_neighbours, ViewRegistration* registration, SlamMap* map);
+void fuse_with_neighbours(std::uint32_t keyframe, std::size_t num_neighbours, PoseSolver* solver, SlamMap* map);
 
 }  // namespace camloc

@@ -30,7 +30,7 @@ void add_landmark(const SlamMap& map, std::uint32_t index, MapExtract* extract) 
     if (camera == kAbsent) continue;
     const ViewFeatures& view = map.keyframe(s.keyframe).view;
     extract->problem.observations.push_back({camera, number, view.normalized[s.feature].x(), view.normalized[s.feature].y(),
-                                             view.depth_m[s.feature], map.sigma_px(view.features.keypoints[s.feature].level)});
+                                             view.depth_m[s.feature], map.levels().sigma_px(view.features.keypoints[s.feature].level)});
   }
 }
 

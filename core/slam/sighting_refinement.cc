@@ -23,7 +23,7 @@ struct Seen {
 
 Seen seen_by(const SlamMap& map, const Sighting& sighting, const Eigen::Vector3d& p_map) {
   const SlamKeyframe& keyframe = map.keyframe(sighting.keyframe);
-  const double scale = map.scale_of_level(keyframe.view.features.keypoints[sighting.feature].level);
+  const double scale = map.levels().scale(keyframe.view.features.keypoints[sighting.feature].level);
   return {keyframe, sighting.feature, scale, keyframe.view.T_map_camera.inverse() * p_map};
 }
 
@@ -39,7 +39,7 @@ std::size_t choose_reference(const SlamMap& map, const SlamLandmark& landmark) {
     const double distance = to_camera.norm();
     const double turned = std::acos(std::clamp(to_camera.dot(landmark.direction) / distance, -1.0, 1.0));
     const double scaled =
-        std::abs(std::log(distance * map.scale_of_level(keyframe.view.features.keypoints[sighting.feature].level)) - middle);
+        std::abs(std::log(distance * map.levels().scale(keyframe.view.features.keypoints[sighting.feature].level)) - middle);
     if (turned + scaled < least) {
       least = turned + scaled;
       best = i;

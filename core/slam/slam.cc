@@ -22,13 +22,6 @@ constexpr double kBridgedKeyframeM = 0.15, kBridgedKeyframeRad = 0.1;
 constexpr std::uint32_t kBridgedNeighbours = 3;  // keyframes before it that its few features are compared with
 constexpr float kBridgedRadiusPx = 8;
 
-RegistrationOptions registration_options(const SlamOptions& options) {
-  RegistrationOptions registration;
-  registration.use_depth = options.use_depth_in_tracking;
-  registration.max_features = options.max_features;
-  return registration;
-}
-
 std::size_t num_with_depth(const ViewFeatures& view) {
   return static_cast<std::size_t>(std::count_if(view.depth_m.begin(), view.depth_m.end(), [](float z) { return z > 0; }));
 }
@@ -39,9 +32,9 @@ Slam::Slam(const RgbdCamera& camera, const SlamOptions& options)
     : camera_(camera),
       options_(options),
       map_(camera, options.scale_factor, options.num_levels),
-      registration_(camera, options.scale_factor, registration_options(options)),
-      tracker_(options.tracker, &map_, &registration_),
-      loops_(options.loops, &map_, &registration_),
+      solver_(camera, map_.levels(), mapping_solver_options(options.max_features, options.use_depth_in_tracking)),
+      tracker_(options.tracker, &map_, &solver_),
+      loops_(options.loops, &map_, &solver_),
       bridge_(camera, options.bridge),
       links_(camera, options.links) {}
 
@@ -80,7 +73,7 @@ ViewReport Slam::place_view(std::uint64_t frame, const ViewFeatures& view, const
   num_lost_in_a_row_ = 0;
   report.state = ViewState::kTracked;
   report.is_found_back = was_lost;
-  report.num_inliers = found.num_inliers();
+  report.num_inliers = found.num_inliers;
   tracker_.accept(view.stamp_ns, found.T_map_camera);
   const bool is_required = std::binary_search(options_.required_keyframes.begin(), options_.required_keyframes.end(), frame);
   if (is_required || tracker_.wants_keyframe(view, found)) {
@@ -136,9 +129,9 @@ std::uint32_t Slam::add_bridged_keyframe(std::uint64_t frame, ViewFeatures view,
   for (std::uint32_t back = 0; back < std::min(kBridgedNeighbours, last + 1); ++back) {
     if (map_.keyframe(last - back).segment == segment) nearby.push_back(last - back);
   }
-  LandmarkSet landmarks;
-  landmarks.assign(map_, nearby, options_.tracker.max_local_landmarks);
-  fuse_into_keyframe(&landmarks, keyframe, kBridgedRadiusPx, &registration_, &map_);
+  LandmarkSet landmarks = map_.empty_landmark_set();
+  map_.collect_landmarks(nearby, options_.tracker.max_local_landmarks, &landmarks);
+  fuse_into_keyframe(&landmarks, keyframe, kBridgedRadiusPx, &solver_, &map_);
   const Matrix6d covariance = rotate_covariance(bridge_begin_.T_reference_camera.rotation, step.covariance);
   loops_.add_link({before, keyframe, T_before_camera, covariance + link_covariance(T_before_camera, kStrongLink)});
   if (links_.add_keyframe(map_, keyframe, thumbnail) == 0) links_.add({before, keyframe, T_before_camera, covariance});
@@ -187,7 +180,7 @@ void Slam::add_keyframe(std::uint64_t frame, ViewFeatures view, const Registrati
   view.T_map_camera = tracked.T_map_camera;
   report->is_keyframe = true;
   const std::uint32_t keyframe = insert_keyframe(frame, map_.keyframe(tracker_.reference()).segment, view, tracked.inliers, &map_);
-  fuse_with_neighbours(keyframe, options_.num_fused_neighbours, &registration_, &map_);
+  fuse_with_neighbours(keyframe, options_.num_fused_neighbours, &solver_, &map_);
   add_far_landmarks(options_.far_landmarks, keyframe, &map_);
   tracker_.set_reference(keyframe);
   remember(frame, view, tracked, true);
@@ -210,9 +203,9 @@ void Slam::remember(std::uint64_t frame, const ViewFeatures& view, const Registr
   kept.is_keyframe = is_keyframe;
   if (is_keyframe) return;
   kept.seen.reserve(tracked.inliers.size());
-  for (const RegisteredPair& pair : tracked.inliers) {
+  for (const LandmarkObservation& pair : tracked.inliers) {
     kept.seen.push_back({pair.landmark, view.normalized[pair.feature].x(), view.normalized[pair.feature].y(), view.depth_m[pair.feature],
-                         map_.sigma_px(view.features.keypoints[pair.feature].level)});
+                         map_.levels().sigma_px(view.features.keypoints[pair.feature].level)});
   }
 }
 

@@ -16,6 +16,7 @@
 
 #include "core/dense/patch_alignment.h"
 #include "core/dense/thumbnail.h"
+#include "core/registration/view_registration.h"
 #include "core/slam/dense_links.h"
 #include "core/slam/depth_bridge.h"
 #include "core/slam/depth_weight.h"
@@ -26,7 +27,6 @@
 #include "core/slam/map_uncertainty.h"
 #include "core/slam/slam_map.h"
 #include "core/slam/tracker.h"
-#include "core/slam/view_registration.h"
 
 namespace camloc {
 
@@ -58,7 +58,7 @@ enum class ViewState : std::uint8_t { kTracked, kLost };
 /// What became of one view.
 struct ViewReport {
   ViewState state = ViewState::kLost;
-  int num_inliers = 0;
+  std::uint32_t num_inliers = 0;
   bool is_keyframe = false;
   bool is_bridged = false;     ///< tracked, but by dense alignment: it shows too few features
   bool is_found_back = false;  ///< the first one after a loss
@@ -150,7 +150,7 @@ class Slam {
   RgbdCamera camera_;
   SlamOptions options_;
   SlamMap map_;
-  ViewRegistration registration_;
+  PoseSolver solver_;
   PlaceIndex places_;
   Tracker tracker_;
   LoopCloser loops_;

@@ -18,9 +18,7 @@ bool is_before(const Sighting& a, std::uint32_t keyframe) { return a.keyframe < 
 
 }  // namespace
 
-SlamMap::SlamMap(const RgbdCamera& camera, float scale_factor, int num_levels) : camera_(camera), num_levels_(num_levels) {
-  for (int level = 0; level < 256; ++level) scale_.push_back(std::pow(scale_factor, static_cast<float>(std::min(level, num_levels - 1))));
-}
+SlamMap::SlamMap(const RgbdCamera& camera, float scale_factor, int num_levels) : camera_(camera), levels_(scale_factor, num_levels) {}
 
 std::uint32_t SlamMap::add_keyframe(std::uint64_t frame, std::uint32_t segment, ViewFeatures view) {
   SlamKeyframe& keyframe = keyframes_.emplace_back();
@@ -91,7 +89,7 @@ std::int32_t SlamMap::resolve(std::uint32_t landmark) const {
 
 float SlamMap::reference_m(const SlamKeyframe& keyframe, std::uint32_t feature, const Eigen::Vector3d& position_m) const {
   const double distance = (position_m - keyframe.view.T_map_camera.translation).norm();
-  return static_cast<float>(distance) * scale_[keyframe.view.features.keypoints[feature].level];
+  return static_cast<float>(distance) * levels_.scale(keyframe.view.features.keypoints[feature].level);
 }
 
 void SlamMap::summarize(std::uint32_t index) {
@@ -153,6 +151,23 @@ std::vector<std::uint32_t> SlamMap::surroundings(std::uint32_t keyframe, std::ui
     keyframes.push_back(c.keyframe);
   }
   return keyframes;
+}
+
+void SlamMap::collect_landmarks(std::span<const std::uint32_t> keyframes, std::size_t max_landmarks, LandmarkSet* set) const {
+  set->clear();
+  std::vector<std::uint8_t> is_in(landmarks_.size(), 0);
+  for (const std::uint32_t k : keyframes) {
+    for (const std::int32_t index : keyframes_[k].landmark_of_feature) {
+      if (index == kNoLandmark || is_in[static_cast<std::size_t>(index)] != 0) continue;
+      if (set->size() >= max_landmarks) return;
+      is_in[static_cast<std::size_t>(index)] = 1;
+      const SlamLandmark& landmark = landmarks_[static_cast<std::size_t>(index)];
+      const Sighting& first = landmark.sightings.front();
+      set->add({static_cast<std::uint32_t>(index), landmark.position_m, landmark.direction, landmark.min_reference_m,
+                landmark.max_reference_m, keyframes_[first.keyframe].view.features.keypoints[first.feature].angle_rad,
+                std::span(&landmark.descriptor, 1)});
+    }
+  }
 }
 
 void SlamMap::join_segments(std::uint32_t from, std::uint32_t into, const Rigid3& T_into_from) {

@@ -12,6 +12,8 @@
 #include "core/features/descriptor.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
+#include "core/registration/keypoint_noise.h"
+#include "core/registration/landmark_set.h"
 #include "core/registration/view_features.h"
 
 namespace camloc {
@@ -70,14 +72,14 @@ class SlamMap {
   [[nodiscard]] std::vector<CovisibleKeyframe> covisible(std::uint32_t keyframe, std::uint32_t min_shared) const;
   /// A keyframe and those that share at least `min_shared` landmarks with it, most first, at most `max_keyframes` in all.
   [[nodiscard]] std::vector<std::uint32_t> surroundings(std::uint32_t keyframe, std::uint32_t min_shared, std::size_t max_keyframes) const;
+  [[nodiscard]] LandmarkSet empty_landmark_set() const { return {camera_.color, levels_}; }
+  /// Landmarks of the keyframes, in that order, each once, at most `max_landmarks`. ids are indices in this map.
+  void collect_landmarks(std::span<const std::uint32_t> keyframes, std::size_t max_landmarks, LandmarkSet* set) const;
   /// Moves all keyframes of a segment, and what they saw, into the frame of another one.
   void join_segments(std::uint32_t from, std::uint32_t into, const Rigid3& T_into_from);
 
   [[nodiscard]] const RgbdCamera& camera() const { return camera_; }
-  [[nodiscard]] float scale_of_level(std::uint8_t level) const { return scale_[level]; }
-  /// Standard deviation of a feature's position, pixels of level 0.
-  [[nodiscard]] float sigma_px(std::uint8_t level) const { return kSigmaPx + kSigmaPxPerScale * (scale_[level] - 1.0F); }
-  [[nodiscard]] int num_levels() const { return num_levels_; }
+  [[nodiscard]] const PyramidLevels& levels() const { return levels_; }
   [[nodiscard]] std::span<const SlamKeyframe> keyframes() const { return keyframes_; }
   [[nodiscard]] std::span<const SlamLandmark> landmarks() const { return landmarks_; }
   [[nodiscard]] SlamKeyframe& keyframe(std::uint32_t i) { return keyframes_[i]; }
@@ -87,14 +89,10 @@ class SlamMap {
   [[nodiscard]] std::uint32_t num_alive_landmarks() const { return num_alive_; }
 
  private:
-  // Measured on the Kinect recordings and the synthetic building: reprojection errors after adjustment grow with the level, but
-  // far less than with its scale.
-  static constexpr float kSigmaPx = 0.6F, kSigmaPxPerScale = 0.25F;
   [[nodiscard]] float reference_m(const SlamKeyframe& keyframe, std::uint32_t feature, const Eigen::Vector3d& position_m) const;
 
   RgbdCamera camera_;
-  int num_levels_;
-  std::vector<float> scale_;
+  PyramidLevels levels_;
   std::vector<SlamKeyframe> keyframes_;
   std::vector<SlamLandmark> landmarks_;
   std::uint32_t num_alive_ = 0;

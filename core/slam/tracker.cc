@@ -28,8 +28,8 @@ Rigid3 scaled(const Rigid3& motion, double factor) { return {exp_so3(factor * lo
 
 }  // namespace
 
-Tracker::Tracker(const TrackerOptions& options, SlamMap* map, ViewRegistration* registration)
-    : options_(options), map_(map), registration_(registration) {}
+Tracker::Tracker(const TrackerOptions& options, SlamMap* map, PoseSolver* solver)
+    : options_(options), map_(map), solver_(solver), local_(map->empty_landmark_set()), place_(map->empty_landmark_set()) {}
 
 void Tracker::set_reference(std::uint32_t keyframe) {
   const Rigid3 T_map_camera = map_->keyframe(reference_).view.T_map_camera * T_reference_camera_;
@@ -57,12 +57,12 @@ Rigid3 Tracker::predict(std::int64_t stamp_ns) const {
 
 void Tracker::update_local_set() {
   if (!is_local_set_stale_) return;
-  local_.assign(*map_, map_->surroundings(reference_, 10, options_.num_local_keyframes), options_.max_local_landmarks);
+  map_->collect_landmarks(map_->surroundings(reference_, 10, options_.num_local_keyframes), options_.max_local_landmarks, &local_);
   is_local_set_stale_ = false;
 }
 
 bool Tracker::is_plausible(const Registration& found, std::int64_t stamp_ns) const {
-  if (!found.is_found || found.num_inliers() < options_.min_inliers || found.inlier_ratio() < options_.min_inlier_ratio) return false;
+  if (!found.is_found || found.num_inliers < options_.min_inliers || found.inlier_ratio() < options_.min_inlier_ratio) return false;
   const Rigid3 T_map_last = map_->keyframe(reference_).view.T_map_camera * T_reference_camera_;
   const double dt_s = std::max(seconds(stamp_ns - last_stamp_ns_), 0.0);
   return (found.T_map_camera.translation - T_map_last.translation).norm() <= 0.2 + options_.max_speed_m_s * dt_s;
@@ -75,14 +75,14 @@ Registration Tracker::track(const ViewFeatures& view, std::uint64_t seed) {
   const Rigid3 T_predicted = predict(view.stamp_ns);
   Registration best;
   const auto consider = [&](Registration found) {
-    if (is_plausible(found, view.stamp_ns) && found.num_inliers() > best.num_inliers()) best = std::move(found);
-    return best.num_inliers() >= options_.min_kept_share * num_last_inliers_ && best.is_found;
+    if (is_plausible(found, view.stamp_ns) && found.num_inliers > best.num_inliers) best = std::move(found);
+    return best.num_inliers >= options_.min_kept_share * num_last_inliers_ && best.is_found;
   };
-  (void)(consider(registration_->guided(view, &local_, T_predicted, options_.radius_px, seed)) ||
-         consider(registration_->guided(view, &local_, T_predicted, options_.wide_radius_px, seed)) ||
-         consider(registration_->unguided(view, &local_, seed)));
+  (void)(consider(register_near(view, T_predicted, options_.radius_px, seed, &local_, solver_)) ||
+         consider(register_near(view, T_predicted, options_.wide_radius_px, seed, &local_, solver_)) ||
+         consider(register_anywhere(view, seed, &local_, solver_)));
   if (!best.is_found) return {};
-  num_last_inliers_ = best.num_inliers();
+  num_last_inliers_ = best.num_inliers;
   const std::uint32_t reference = best_reference(best);
   if (reference != reference_) set_reference(reference);
   return best;
@@ -91,7 +91,7 @@ Registration Tracker::track(const ViewFeatures& view, std::uint64_t seed) {
 // The keyframe that sees most of what the view sees.
 std::uint32_t Tracker::best_reference(const Registration& tracked) const {
   std::vector<std::uint32_t> counts(map_->keyframes().size(), 0);
-  for (const RegisteredPair& pair : tracked.inliers) {
+  for (const LandmarkObservation& pair : tracked.inliers) {
     for (const Sighting& s : map_->landmark(pair.landmark).sightings) ++counts[s.keyframe];
   }
   std::uint32_t best = reference_;
@@ -106,19 +106,19 @@ Registration Tracker::find_back(const ViewFeatures& view, const PlaceIndex& plac
   Registration best;
   std::uint32_t best_keyframe = 0;
   std::size_t num_tried = 0;
-  for (const RankedPlace& place : places.query(view.features.descriptors, 4 * kPlacesTried)) {
+  for (const RankedKeyframe& place : places.query(view.features.descriptors, 4 * kPlacesTried)) {
     if (map_->keyframe(place.keyframe).segment != segment) continue;
     if (num_tried++ == kPlacesTried) break;
-    place_.assign(*map_, map_->surroundings(place.keyframe, 15, kKeyframesPerPlace), options_.max_local_landmarks);
-    const Registration found = registration_->unguided(view, &place_, seed);
-    if (!is_plausible(found, view.stamp_ns) || found.num_inliers() <= best.num_inliers()) continue;
+    map_->collect_landmarks(map_->surroundings(place.keyframe, 15, kKeyframesPerPlace), options_.max_local_landmarks, &place_);
+    const Registration found = register_anywhere(view, seed, &place_, solver_);
+    if (!is_plausible(found, view.stamp_ns) || found.num_inliers <= best.num_inliers) continue;
     best = found;
     best_keyframe = place.keyframe;
   }
-  const bool is_sure = best.is_found && best.num_inliers() >= options_.min_found_inliers && best.spread >= options_.min_spread &&
+  const bool is_sure = best.is_found && best.num_inliers >= options_.min_found_inliers && best.spread >= options_.min_spread &&
                        best.depth_agreement >= options_.min_depth_agreement;
   if (!is_sure) return {};
-  num_last_inliers_ = best.num_inliers();
+  num_last_inliers_ = best.num_inliers;
   set_reference(best_keyframe);
   set_reference(best_reference(best));
   velocity_.reset();
@@ -130,9 +130,9 @@ bool Tracker::wants_keyframe(const ViewFeatures& view, const Registration& track
   const Rigid3 T_reference_camera = reference.view.T_map_camera.inverse() * tracked.T_map_camera;
   if (T_reference_camera.translation.norm() > options_.keyframe_distance * median_depth_m(view)) return true;
   if (rotation_distance_rad(T_reference_camera.rotation, Eigen::Quaterniond::Identity()) > options_.keyframe_angle_rad) return true;
-  const double share = static_cast<double>(tracked.num_inliers()) / std::max<double>(1, static_cast<double>(view.size()));
+  const double share = static_cast<double>(tracked.num_inliers) / std::max<double>(1, static_cast<double>(view.size()));
   const double share_then = static_cast<double>(reference.num_landmarks) / std::max<double>(1, static_cast<double>(reference.view.size()));
-  return tracked.num_inliers() < options_.keyframe_inliers || share < options_.keyframe_share * share_then;
+  return tracked.num_inliers < options_.keyframe_inliers || share < options_.keyframe_share * share_then;
 }
 
 }  // namespace camloc

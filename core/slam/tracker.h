@@ -9,10 +9,10 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/slam/landmark_set.h"
+#include "core/registration/landmark_set.h"
+#include "core/registration/view_registration.h"
 #include "core/slam/loops/place_index.h"
 #include "core/slam/slam_map.h"
-#include "core/slam/view_registration.h"
 
 namespace camloc {
 
@@ -20,25 +20,25 @@ struct TrackerOptions {
   std::size_t num_local_keyframes = 16;
   std::size_t max_local_landmarks = 4000;
   float radius_px = 14, wide_radius_px = 40;  ///< search windows around the prediction
-  int min_inliers = 30;
+  std::uint32_t min_inliers = 30;
   double min_inlier_ratio = 0.3;
   double min_kept_share = 0.5;  ///< of the last view's inliers; with fewer, wider searches are tried, too
   double max_speed_m_s = 4.0;   ///< a pose that asks for more is refused
   double max_gap_s = 0.5;       ///< a longer gap between stamps ends the prediction
   // Finding back after a loss asks for more than going on.
-  int min_found_inliers = 45;
+  std::uint32_t min_found_inliers = 45;
   double min_depth_agreement = 0.7, min_spread = 0.12;
   // A keyframe every so often:
   double keyframe_distance = 0.10;  ///< from the reference keyframe, as a share of the median depth
   double keyframe_angle_rad = 0.21;
-  double keyframe_share = 0.45;  ///< or when the share of features that show landmarks falls below that of the
-                                 ///< reference keyframe times this
-  int keyframe_inliers = 120;    ///< or below this many
+  double keyframe_share = 0.45;          ///< or when the share of features that show landmarks falls below that of the
+                                         ///< reference keyframe times this
+  std::uint32_t keyframe_inliers = 120;  ///< or below this many
 };
 
 class Tracker {
  public:
-  Tracker(const TrackerOptions& options, SlamMap* map, ViewRegistration* registration);
+  Tracker(const TrackerOptions& options, SlamMap* map, PoseSolver* solver);
 
   /// Pose of the view near the last one, or not found. Adapts the reference keyframe.
   [[nodiscard]] Registration track(const ViewFeatures& view, std::uint64_t seed);
@@ -71,13 +71,13 @@ class Tracker {
 
   TrackerOptions options_;
   SlamMap* map_;
-  ViewRegistration* registration_;
+  PoseSolver* solver_;
   LandmarkSet local_, place_;
   bool is_local_set_stale_ = true;
   std::uint32_t reference_ = 0;
   Rigid3 T_reference_camera_;
   std::int64_t last_stamp_ns_ = 0;
-  int num_last_inliers_ = 0;
+  std::uint32_t num_last_inliers_ = 0;
   std::optional<Velocity> velocity_;
 };
 

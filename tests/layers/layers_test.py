@@ -20,6 +20,7 @@ LCM_TYPES = ["camloc", "bot_core"]
 # What a folder may include besides itself. Of several that match a file, the longest rules.
 ALLOWED = {folder: CORE[:i] for i, folder in enumerate(CORE)}
 ALLOWED["core/features"] = ["core/base", "core/geometry"]
+ALLOWED["core/localize"] = CORE[:6]
 ALLOWED["core/registration"] = ["core/base", "core/geometry", "core/features"]
 ALLOWED["core/optimize"] = ["core/base", "core/geometry"]
 ALLOWED["core/dense"] = ["core/base", "core/geometry", "core/features", "core/registration"]

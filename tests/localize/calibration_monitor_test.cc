@@ -16,14 +16,14 @@ namespace {
 constexpr double kSure = 0.01;
 
 TEST(CalibrationMonitor, HealthyAtFirst) {
-  const CalibrationMonitor monitor{CalibrationMonitorOptions{}};
+  const CalibrationMonitor monitor{LocalizerNumbers{}};
   EXPECT_FALSE(monitor.health().is_suspect);
   EXPECT_EQ(monitor.health().focal_scale, 1);
   EXPECT_EQ(monitor.health().num_frames, 0U);
 }
 
 TEST(CalibrationMonitor, SuspectsOnlyWithEnoughFrames) {
-  CalibrationMonitor monitor{CalibrationMonitorOptions{}};
+  CalibrationMonitor monitor{LocalizerNumbers{}};
   for (int i = 1; i <= 20; ++i) {
     monitor.add(1.1, kSure);
     EXPECT_EQ(monitor.health().is_suspect, i >= 8) << i;
@@ -34,19 +34,19 @@ TEST(CalibrationMonitor, SuspectsOnlyWithEnoughFrames) {
 
 TEST(CalibrationMonitor, LimitHoldsOnBothSides) {
   for (const double scale : {0.964, 1.036}) {
-    CalibrationMonitor monitor{CalibrationMonitorOptions{}};
+    CalibrationMonitor monitor{LocalizerNumbers{}};
     for (int i = 0; i < 8; ++i) monitor.add(scale, kSure);
     EXPECT_TRUE(monitor.health().is_suspect) << scale;
   }
   for (const double scale : {0.966, 1.0, 1.034}) {
-    CalibrationMonitor monitor{CalibrationMonitorOptions{}};
+    CalibrationMonitor monitor{LocalizerNumbers{}};
     for (int i = 0; i < 100; ++i) monitor.add(scale, kSure);
     EXPECT_FALSE(monitor.health().is_suspect) << scale;
   }
 }
 
 TEST(CalibrationMonitor, IsTheMedianOfTheLast31) {
-  CalibrationMonitor monitor{CalibrationMonitorOptions{}};
+  CalibrationMonitor monitor{LocalizerNumbers{}};
   testing::Random random(3);
   std::vector<double> all;
   for (int i = 0; i < 200; ++i) {
@@ -59,7 +59,7 @@ TEST(CalibrationMonitor, IsTheMedianOfTheLast31) {
 }
 
 TEST(CalibrationMonitor, AFewWildFramesChangeNothing) {
-  CalibrationMonitor monitor{CalibrationMonitorOptions{}};
+  CalibrationMonitor monitor{LocalizerNumbers{}};
   for (int i = 0; i < 200; ++i) {
     monitor.add(i % 5 < 2 ? 3.0 : 1.001, kSure);
     EXPECT_FALSE(monitor.health().is_suspect && i >= 30) << i;
@@ -68,7 +68,7 @@ TEST(CalibrationMonitor, AFewWildFramesChangeNothing) {
 }
 
 TEST(CalibrationMonitor, RecoversWhenTheCameraIsRightAgain) {
-  CalibrationMonitor monitor{CalibrationMonitorOptions{}};
+  CalibrationMonitor monitor{LocalizerNumbers{}};
   for (int i = 0; i < 100; ++i) monitor.add(1.17, kSure);
   for (int i = 0; i < 15; ++i) monitor.add(1, kSure);
   EXPECT_TRUE(monitor.health().is_suspect);
@@ -77,7 +77,7 @@ TEST(CalibrationMonitor, RecoversWhenTheCameraIsRightAgain) {
 }
 
 TEST(CalibrationMonitor, UncertainFramesTakeNoPart) {
-  CalibrationMonitor monitor{CalibrationMonitorOptions{}};
+  CalibrationMonitor monitor{LocalizerNumbers{}};
   for (const double sigma : {0.03, 0.5, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()}) {
     for (int i = 0; i < 50; ++i) monitor.add(1.5, sigma);
   }

@@ -43,13 +43,13 @@ TEST_P(LocalizerModes, FindsEveryFrameWithinMillimetres) {
     EXPECT_LT(error.head<3>().norm(), 0.006) << i;
     EXPECT_LT(error.tail<3>().norm(), 0.003) << i;
     EXPECT_GT(result.quality, 70);
-    EXPECT_GT(result.num_inliers, 300U);
-    EXPECT_LE(result.num_inliers, result.num_matches);
-    EXPECT_LE(result.num_matches, result.num_visible);
-    EXPECT_GT(result.spread, 0.5);
-    EXPECT_GT(result.depth_agreement, 0.95);
-    EXPECT_GT(result.map_depth_agreement, 0.95);
-    EXPECT_NEAR(result.focal_scale, 1, 0.01);
+    EXPECT_GT(result.evidence.num_inliers, 300U);
+    EXPECT_LE(result.evidence.num_inliers, result.evidence.num_matches);
+    EXPECT_LE(result.evidence.num_matches, result.evidence.num_visible);
+    EXPECT_GT(result.evidence.spread, 0.5);
+    EXPECT_GT(result.evidence.depth_agreement, 0.95);
+    EXPECT_GT(result.evidence.map_depth_agreement, 0.95);
+    EXPECT_NEAR(result.evidence.focal_scale, 1, 0.01);
     // Tracked frames follow the first, which alone is a global fix; a kidnapped camera is searched for each time.
     const bool is_tracked = GetParam() && num_frames > 1;
     EXPECT_EQ(result.is_tracked, is_tracked) << i;

@@ -27,13 +27,13 @@ double difference(const Rigid3& a, const Rigid3& b) { return pose_error(a, b).no
 Matrix6d covariance() { return Matrix6d(Vector6d(1e-4, 2e-4, 3e-4, 1e-5, 2e-5, 3e-5).asDiagonal()); }
 
 TEST(MotionModel, KnowsNothingAtFirst) {
-  const MotionModel model{MotionModelOptions{}};
+  const MotionModel model{LocalizerNumbers{}};
   EXPECT_FALSE(model.has_fix());
   EXPECT_TRUE(model.is_plausible(0, kStart)) << "anything is";
 }
 
 TEST(MotionModel, OneFixStaysWhereItIs) {
-  MotionModel model{MotionModelOptions{}};
+  MotionModel model{LocalizerNumbers{}};
   model.add_fix(7, kStart, covariance(), true);
   EXPECT_TRUE(model.has_fix());
   EXPECT_EQ(model.last_stamp_ns(), 7);
@@ -42,7 +42,7 @@ TEST(MotionModel, OneFixStaysWhereItIs) {
 }
 
 TEST(MotionModel, ConstantVelocityIsExact) {
-  MotionModel model{MotionModelOptions{}};
+  MotionModel model{LocalizerNumbers{}};
   Rigid3 T = kStart;
   for (int i = 0; i < 10; ++i) {
     if (i >= 2) { EXPECT_LT(difference(model.predict(i * kStepNs), T), 1e-12) << i; }
@@ -54,7 +54,7 @@ TEST(MotionModel, ConstantVelocityIsExact) {
 }
 
 TEST(MotionModel, JumpsAndLongGapsGiveNoVelocity) {
-  MotionModel model{MotionModelOptions{}};
+  MotionModel model{LocalizerNumbers{}};
   model.add_fix(0, kStart, covariance(), false);
   model.add_fix(kStepNs, after_steps(kStart, 1), covariance(), false);
   EXPECT_EQ(difference(model.predict(2 * kStepNs), after_steps(kStart, 1)), 0) << "not continuous";
@@ -67,7 +67,7 @@ TEST(MotionModel, JumpsAndLongGapsGiveNoVelocity) {
 }
 
 TEST(MotionModel, StopsExtrapolatingAfterHalfASecond) {
-  MotionModel model{MotionModelOptions{}};
+  MotionModel model{LocalizerNumbers{}};
   model.add_fix(0, kStart, covariance(), true);
   model.add_fix(kStepNs, after_steps(kStart, 1), covariance(), true);
   const Rigid3 T_half_second = model.predict(kStepNs + 500'000'000);
@@ -76,7 +76,7 @@ TEST(MotionModel, StopsExtrapolatingAfterHalfASecond) {
 }
 
 TEST(MotionModel, UncertaintyGrowsAsTheOptionsSay) {
-  const MotionModelOptions options;
+  const LocalizerNumbers options;
   MotionModel model{options};
   model.add_fix(0, kStart, covariance(), true);
   const auto expect_growth = [&](std::int64_t from_ns, double factor) {
@@ -94,7 +94,7 @@ TEST(MotionModel, UncertaintyGrowsAsTheOptionsSay) {
 }
 
 TEST(MotionModel, PlausibleIsWhatACameraCanDo) {
-  const MotionModelOptions options;
+  const LocalizerNumbers options;
   MotionModel model{options};
   model.add_fix(0, kStart, covariance(), true);
   const auto moved = [](double metres) { return Rigid3{kStart.rotation, kStart.translation + Eigen::Vector3d(0, metres, 0)}; };
@@ -110,7 +110,7 @@ TEST(MotionModel, PlausibleIsWhatACameraCanDo) {
 }
 
 TEST(MotionModel, ExpectedIsWhereThePredictionSays) {
-  const MotionModelOptions options;
+  const LocalizerNumbers options;
   MotionModel model{options};
   EXPECT_TRUE(model.is_expected(0, kStart, covariance()));
   model.add_fix(0, kStart, covariance(), true);
@@ -130,7 +130,7 @@ TEST(MotionModel, ExpectedIsWhereThePredictionSays) {
 }
 
 TEST(MotionModel, ResetForgetsAllButTheOptions) {
-  MotionModelOptions options;
+  LocalizerNumbers options;
   options.max_speed_m_per_s = 100;
   MotionModel model{options};
   model.add_fix(0, kStart, covariance(), true);

@@ -98,22 +98,22 @@ inline std::vector<std::uint64_t> bits_of(const Localization& r) {
                                      static_cast<std::uint64_t>(r.quality),
                                      r.is_tracked,
                                      r.num_features,
-                                     r.num_visible,
-                                     r.num_matches,
-                                     r.num_inliers,
+                                     r.evidence.num_visible,
+                                     r.evidence.num_matches,
+                                     r.evidence.num_inliers,
                                      r.reset_counter};
   const auto add = [&bits](double value) { bits.push_back(std::bit_cast<std::uint64_t>(value)); };
   for (const double value : r.T_map_camera.rotation.coeffs()) add(value);
   for (const double value : r.T_map_camera.translation) add(value);
   for (const double value : r.covariance.reshaped()) add(value);
-  for (const double value : {r.inlier_ratio, r.spread, r.margin, r.focal_scale, r.depth_agreement, r.map_depth_agreement, r.jump_m})
+  for (const double value : {r.evidence.inlier_ratio(), r.evidence.spread, r.margin, r.evidence.focal_scale, r.evidence.depth_agreement, r.evidence.map_depth_agreement, r.jump_m})
     add(value);
   return bits;
 }
 
 inline bool is_finite(const Localization& r) {
   bool is_ok = r.T_map_camera.rotation.coeffs().allFinite() && r.T_map_camera.translation.allFinite() && r.covariance.allFinite();
-  for (const double value : {r.inlier_ratio, r.spread, r.margin, r.focal_scale, r.depth_agreement, r.map_depth_agreement, r.jump_m}) {
+  for (const double value : {r.evidence.inlier_ratio(), r.evidence.spread, r.margin, r.evidence.focal_scale, r.evidence.depth_agreement, r.evidence.map_depth_agreement, r.jump_m}) {
     is_ok = is_ok && std::isfinite(value);
   }
   return is_ok;

@@ -50,7 +50,7 @@ TEST_F(StateMachine, CoastsThenIsLost) {
   for (std::uint64_t i = 11; i < 40; ++i) {
     const Localization& result = localizer_.process(black(i).view());
     EXPECT_EQ(result.reason, Reason::kFewFeatures);
-    EXPECT_EQ(result.num_inliers, 0U);
+    EXPECT_EQ(result.evidence.num_inliers, 0U);
     EXPECT_EQ(result.reset_counter, 1U);
     if (result.stamp_ns - last_ns > 500'000'000) {
       EXPECT_EQ(result.state, State::kLost) << i;

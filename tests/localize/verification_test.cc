@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Each reason is reached from a good hypothesis by one changed figure, on both sides of its limit.
+// Each reason is reached from good evidence by one changed figure, on both sides of its limit.
 #include "core/localize/verification.h"
 
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@
 namespace camloc {
 namespace {
 
-PoseHypothesis good() {
-  PoseHypothesis h;
+PoseEvidence good() {
+  PoseEvidence h;
   h.is_found = true;
   h.covariance = 1e-4 * Matrix6d::Identity();
   h.num_matches = 200;
@@ -32,7 +32,7 @@ PoseHypothesis good() {
 }
 
 struct Figures {
-  PoseHypothesis hypothesis = good();
+  PoseEvidence evidence = good();
   double margin = 0.8;
   bool is_tracked = false;
 };
@@ -40,10 +40,10 @@ struct Figures {
 Reason verdict(const std::function<void(Figures*)>& change) {
   Figures figures;
   change(&figures);
-  return verify(figures.hypothesis, figures.margin, figures.is_tracked, VerificationOptions{});
+  return verify(figures.evidence, figures.margin, figures.is_tracked, LocalizerNumbers{});
 }
 
-TEST(Verification, AGoodHypothesisIsVerified) {
+TEST(Verification, GoodEvidenceIsVerified) {
   EXPECT_EQ(verdict([](Figures*) {}), Reason::kNone);
   EXPECT_EQ(verdict([](Figures* f) { f->is_tracked = true; }), Reason::kNone);
 }
@@ -53,17 +53,17 @@ TEST(Verification, EveryFigureHasItsReason) {
     Reason reason;
     std::function<void(Figures*)> good, bad;  ///< just inside and just outside the limit
   };
-  const VerificationOptions o;
+  const LocalizerNumbers o;
   const auto inliers = [](std::uint32_t count) {
     return [count](Figures* f) {
-      f->hypothesis.num_inliers = count;
-      f->hypothesis.num_matches = count + 5;
+      f->evidence.num_inliers = count;
+      f->evidence.num_matches = count + 5;
     };
   };
   const auto without_depth = [&](std::uint32_t count) {
     return [count, &inliers](Figures* f) {
       inliers(count)(f);
-      f->hypothesis.num_map_depth = 29;
+      f->evidence.num_map_depth = 29;
     };
   };
   const auto tracked = [&](std::uint32_t count) {
@@ -74,35 +74,34 @@ TEST(Verification, EveryFigureHasItsReason) {
   };
   const auto focal = [](double scale, double sigma) {
     return [=](Figures* f) {
-      f->hypothesis.focal_scale = scale;
-      f->hypothesis.focal_scale_sigma = sigma;
+      f->evidence.focal_scale = scale;
+      f->evidence.focal_scale_sigma = sigma;
     };
   };
   const Case cases[] = {
-      {Reason::kFewMatches, inliers(o.min_inliers), [](Figures* f) { f->hypothesis.num_matches = f->hypothesis.num_inliers = 19; }},
-      {Reason::kFewInliers, [](Figures*) {}, [](Figures* f) { f->hypothesis.is_found = false; }},
+      {Reason::kFewMatches, inliers(o.min_inliers), [](Figures* f) { f->evidence.num_matches = f->evidence.num_inliers = 19; }},
+      {Reason::kFewInliers, [](Figures*) {}, [](Figures* f) { f->evidence.is_found = false; }},
       {Reason::kFewInliers, inliers(o.min_inliers), inliers(o.min_inliers - 1)},
       {Reason::kFewInliers, without_depth(o.min_inliers_no_depth), without_depth(o.min_inliers_no_depth - 1)},
       {Reason::kFewInliers, tracked(o.min_tracked_inliers), tracked(o.min_tracked_inliers - 1)},
-      {Reason::kLowInlierRatio, [](Figures* f) { f->hypothesis.num_matches = 374; }, [](Figures* f) { f->hypothesis.num_matches = 376; }},
-      {Reason::kPoorSpread, [](Figures* f) { f->hypothesis.spread = 5.0 / 48; }, [](Figures* f) { f->hypothesis.spread = 4.0 / 48; }},
-      {Reason::kAmbiguous, [](Figures* f) { f->margin = VerificationOptions{}.min_margin + 0.01; },
-       [](Figures* f) { f->margin = VerificationOptions{}.min_margin - 0.01; }},
-      {Reason::kDepthInconsistent, [](Figures* f) { f->hypothesis.depth_agreement = VerificationOptions{}.min_depth_agreement + 0.01; },
-       [](Figures* f) { f->hypothesis.depth_agreement = VerificationOptions{}.min_depth_agreement - 0.01; }},
-      {Reason::kDepthInconsistent,
-       [](Figures* f) { f->hypothesis.map_depth_agreement = VerificationOptions{}.min_map_depth_agreement + 0.01; },
-       [](Figures* f) { f->hypothesis.map_depth_agreement = VerificationOptions{}.min_map_depth_agreement - 0.01; }},
+      {Reason::kLowInlierRatio, [](Figures* f) { f->evidence.num_matches = 374; }, [](Figures* f) { f->evidence.num_matches = 376; }},
+      {Reason::kPoorSpread, [](Figures* f) { f->evidence.spread = 5.0 / 48; }, [](Figures* f) { f->evidence.spread = 4.0 / 48; }},
+      {Reason::kAmbiguous, [](Figures* f) { f->margin = LocalizerNumbers{}.min_margin + 0.01; },
+       [](Figures* f) { f->margin = LocalizerNumbers{}.min_margin - 0.01; }},
+      {Reason::kDepthInconsistent, [](Figures* f) { f->evidence.depth_agreement = LocalizerNumbers{}.min_depth_agreement + 0.01; },
+       [](Figures* f) { f->evidence.depth_agreement = LocalizerNumbers{}.min_depth_agreement - 0.01; }},
+      {Reason::kDepthInconsistent, [](Figures* f) { f->evidence.map_depth_agreement = LocalizerNumbers{}.min_map_depth_agreement + 0.01; },
+       [](Figures* f) { f->evidence.map_depth_agreement = LocalizerNumbers{}.min_map_depth_agreement - 0.01; }},
       {Reason::kCalibrationMismatch, focal(1.04, 0.004), focal(1.06, 0.004)},
       {Reason::kCalibrationMismatch, focal(0.96, 0.004), focal(0.94, 0.004)},
       {Reason::kCalibrationMismatch, focal(1.1, 0.026), focal(1.1, 0.024)},
-      {Reason::kUncertain, [](Figures* f) { f->hypothesis.covariance(1, 1) = 0.14 * 0.14; },
-       [](Figures* f) { f->hypothesis.covariance(1, 1) = 0.16 * 0.16; }},
-      {Reason::kUncertain, [](Figures* f) { f->hypothesis.covariance(5, 5) = 0.055 * 0.055; },
-       [](Figures* f) { f->hypothesis.covariance(5, 5) = 0.065 * 0.065; }},
+      {Reason::kUncertain, [](Figures* f) { f->evidence.covariance(1, 1) = 0.14 * 0.14; },
+       [](Figures* f) { f->evidence.covariance(1, 1) = 0.16 * 0.16; }},
+      {Reason::kUncertain, [](Figures* f) { f->evidence.covariance(5, 5) = 0.055 * 0.055; },
+       [](Figures* f) { f->evidence.covariance(5, 5) = 0.065 * 0.065; }},
       {Reason::kUncertain, [](Figures*) {},
-       [](Figures* f) { f->hypothesis.covariance.setConstant(std::numeric_limits<double>::quiet_NaN()); }},
-      {Reason::kUncertain, [](Figures*) {}, [](Figures* f) { f->hypothesis.covariance(4, 4) = std::numeric_limits<double>::infinity(); }},
+       [](Figures* f) { f->evidence.covariance.setConstant(std::numeric_limits<double>::quiet_NaN()); }},
+      {Reason::kUncertain, [](Figures*) {}, [](Figures* f) { f->evidence.covariance(4, 4) = std::numeric_limits<double>::infinity(); }},
   };
   int number = 0;
   for (const Case& c : cases) {
@@ -113,13 +112,13 @@ TEST(Verification, EveryFigureHasItsReason) {
 }
 
 TEST(Verification, ThinEvidenceNeedsDepthToConfirmIt) {
-  const VerificationOptions o;
+  const LocalizerNumbers o;
   const auto with = [&](std::uint32_t num_inliers, double inliers_agree, double map_agrees) {
     return verdict([=](Figures* f) {
-      f->hypothesis.num_inliers = num_inliers;
-      f->hypothesis.num_matches = num_inliers + 5;
-      f->hypothesis.depth_agreement = inliers_agree;
-      f->hypothesis.map_depth_agreement = map_agrees;
+      f->evidence.num_inliers = num_inliers;
+      f->evidence.num_matches = num_inliers + 5;
+      f->evidence.depth_agreement = inliers_agree;
+      f->evidence.map_depth_agreement = map_agrees;
     });
   };
   EXPECT_EQ(with(o.strong_inliers, o.min_depth_agreement_thin - 0.01, 0.9), Reason::kNone);
@@ -131,32 +130,32 @@ TEST(Verification, ThinEvidenceNeedsDepthToConfirmIt) {
 
 TEST(Verification, TooFewDepthsSayNothing) {
   EXPECT_EQ(verdict([](Figures* f) {
-              f->hypothesis.num_with_depth = 11;
-              f->hypothesis.depth_agreement = 0;
+              f->evidence.num_with_depth = 11;
+              f->evidence.depth_agreement = 0;
             }),
             Reason::kNone);
   EXPECT_EQ(verdict([](Figures* f) {
-              f->hypothesis.num_map_depth = 29;
-              f->hypothesis.map_depth_agreement = 0;
+              f->evidence.num_map_depth = 29;
+              f->evidence.map_depth_agreement = 0;
             }),
             Reason::kNone);
 }
 
 TEST(Verification, AnUnmeasuredFocalLengthIsNoMismatch) {
-  PoseHypothesis h = good();
+  PoseEvidence h = good();
   h.focal_scale = 1.5;
-  EXPECT_TRUE(is_calibration_mismatch(h, VerificationOptions{}));
+  EXPECT_TRUE(is_calibration_mismatch(h, LocalizerNumbers{}));
   h.has_focal_scale = false;
-  EXPECT_FALSE(is_calibration_mismatch(h, VerificationOptions{}));
+  EXPECT_FALSE(is_calibration_mismatch(h, LocalizerNumbers{}));
 }
 
-TEST(Verification, AnEmptyHypothesisFails) { EXPECT_EQ(verify(PoseHypothesis{}, 1, true, VerificationOptions{}), Reason::kFewMatches); }
+TEST(Verification, NoEvidenceFails) { EXPECT_EQ(verify(PoseEvidence{}, 1, true, LocalizerNumbers{}), Reason::kFewMatches); }
 
 TEST(Quality, GrowsWithEveryFigureAndStaysInRange) {
   const int base = quality_of(good(), 0.8);
   EXPECT_GT(base, 40);
   EXPECT_LT(base, 100);
-  PoseHypothesis h = good();
+  PoseEvidence h = good();
   h.num_inliers = 60;
   EXPECT_LT(quality_of(h, 0.8), base);
   h = good();
@@ -167,7 +166,7 @@ TEST(Quality, GrowsWithEveryFigureAndStaysInRange) {
   EXPECT_LT(quality_of(h, 0.8), base);
   EXPECT_LT(quality_of(good(), 0.4), base);
   EXPECT_EQ(quality_of(good(), -3), 0);
-  EXPECT_EQ(quality_of(PoseHypothesis{}, 1), 0);
+  EXPECT_EQ(quality_of(PoseEvidence{}, 1), 0);
   h = good();
   h.num_inliers = h.num_matches = 5000;
   h.spread = 1;

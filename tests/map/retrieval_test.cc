@@ -90,7 +90,7 @@ TEST(Retriever, SelectionIsTheHeadOfTheFullOrder) {
   Retriever retriever(view, 1000);
   const auto image = view_of(map, 4, 60);
   const auto span = retriever.retrieve(image, 20);
-  const std::vector<RetrievedKeyframe> all(span.begin(), span.end());
+  const std::vector<RankedKeyframe> all(span.begin(), span.end());
   for (int count = 0; count <= 25; ++count) {
     const auto found = retriever.retrieve(image, count);
     ASSERT_EQ(found.size(), static_cast<std::size_t>(std::min(count, 20)));

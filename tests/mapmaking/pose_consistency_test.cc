@@ -33,7 +33,7 @@ PoseConsistencyEstimate estimate_with(double error_m, double error_rad) {
     descriptors.push_back({{random(), random(), random(), random()}});
   }
   const RgbdCamera camera = wide_camera();
-  PoseConsistency consistency(camera, {});
+  PoseConsistency consistency(camera, PyramidLevels(1.2F, 8), {});
   const auto noise3 = [&](double sigma) {
     return Eigen::Vector3d(sigma * Eigen::Vector3d(normal(random), normal(random), normal(random)));
   };
@@ -76,7 +76,7 @@ TEST(PoseConsistency, FindsTheDisagreementOfAPair) {
 }
 
 TEST(PoseConsistency, IsUnknownWithoutPairs) {
-  const auto estimate = PoseConsistency(wide_camera(), {}).estimate();
+  const auto estimate = PoseConsistency(wide_camera(), PyramidLevels(1.2F, 8), {}).estimate();
   EXPECT_EQ(estimate.num_pairs, 0U);
   EXPECT_EQ(estimate.sigma_m, 0.0);
 }

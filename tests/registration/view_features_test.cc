@@ -49,7 +49,8 @@ TEST(ViewFeatures, RaysAndDepthsBelongToTheirKeypoints) {
   ViewExtractor extractor(camera, OrbOptions{.num_features = 500});
   const FrameBuffer frame = test_frame();
   ASSERT_TRUE(extractor.check(frame.view()).is_ok());
-  const ViewFeatures view = extractor.extract(frame.view());
+  ViewFeatures view;
+  extractor.extract(frame.view(), &view);
   ASSERT_GE(view.size(), 200U);
   EXPECT_LE(view.size(), 500U);
   ASSERT_EQ(view.normalized.size(), view.size());
@@ -78,7 +79,8 @@ TEST(ViewFeatures, RaysAndDepthsBelongToTheirKeypoints) {
 TEST(ViewFeatures, TheSameFrameGivesTheSameView) {
   ViewExtractor extractor(test_camera(), OrbOptions{.num_features = 300});
   const FrameBuffer frame = test_frame();
-  const ViewFeatures a = extractor.extract(frame.view()), b = extractor.extract(frame.view());
+  ViewFeatures a;
+  extractor.extract(frame.view()), b = extractor.extract(frame.view(), &a);
   EXPECT_EQ(a.features.descriptors, b.features.descriptors);
   EXPECT_EQ(a.normalized, b.normalized);
   EXPECT_EQ(a.depth_m, b.depth_m);
@@ -110,9 +112,52 @@ TEST(ViewFeatures, AnImageOfNothingHasNoFeatures) {
   ViewExtractor extractor(test_camera(), OrbOptions{});
   FrameBuffer frame = test_frame();
   std::fill(frame.gray.pixels.begin(), frame.gray.pixels.end(), std::uint8_t{90});
-  const ViewFeatures view = extractor.extract(frame.view());
+  ViewFeatures view;
+  extractor.extract(frame.view(), &view);
   EXPECT_EQ(view.size(), 0U);
   EXPECT_TRUE(view.normalized.empty() && view.depth_m.empty());
+}
+
+TEST(ViewFeatures, DepthMayBeAbsentOrUnwanted) {
+  const FrameBuffer buffer = test_frame();
+  ViewExtractor with(test_camera(), OrbOptions{}), without(test_camera(), OrbOptions{}, false);
+  Frame bare = buffer.view();
+  bare.depth = {};
+  for (const auto& [extractor, frame] : {std::pair{&with, bare}, std::pair{&without, buffer.view()}}) {
+    ViewFeatures view;
+    extractor->extract(frame, &view);
+    EXPECT_GT(view.size(), 100U);
+    for (const float z : view.depth_m) ASSERT_EQ(z, 0);
+    EXPECT_EQ(extractor->depth_of(frame).at(160, 120), 0);
+  }
+  EXPECT_NEAR(with.depth_of(buffer.view()).at(160, 120), 1.16, 0.01);
+}
+
+TEST(ViewFeatures, AnImageOfTheRightSizeIsAsked) {
+  const FrameBuffer buffer = test_frame();
+  const ViewExtractor extractor(test_camera(), OrbOptions{});
+  EXPECT_TRUE(extractor.has_image(buffer.view()));
+  for (int fault = 0; fault < 4; ++fault) {
+    Frame frame = buffer.view();
+    if (fault == 0) frame.gray = {};
+    if (fault == 1) frame.gray.width = 160;
+    if (fault == 2) frame.gray.height = 1;
+    if (fault == 3) frame.gray.data = nullptr;
+    EXPECT_FALSE(extractor.has_image(frame)) << fault;
+  }
+}
+
+TEST(ViewFeatures, AViewThatIsUsedAgainKeepsNothingOfTheLast) {
+  ViewExtractor extractor(test_camera(), OrbOptions{.num_features = 300});
+  const FrameBuffer buffer = test_frame();
+  FrameBuffer black = buffer;
+  std::fill(black.gray.pixels.begin(), black.gray.pixels.end(), std::uint8_t{0});
+  ViewFeatures view = extractor.extract_with_patches(buffer.view());
+  view.T_map_camera.translation.x() = 3;
+  extractor.extract(black.view(), &view);
+  EXPECT_EQ(view.size(), 0U);
+  EXPECT_TRUE(view.normalized.empty() && view.depth_m.empty() && view.patches.empty());
+  EXPECT_EQ(view.T_map_camera.translation, Eigen::Vector3d::Zero());
 }
 
 }  // namespace

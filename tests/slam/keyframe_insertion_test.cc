@@ -29,10 +29,10 @@ TEST(KeyframeInsertion, TrackedLandmarksAreSeenAgainInsteadOfMadeAnew) {
   const Rigid3 T = looking({0.05, 0, 1.4}, 0.03);
   ViewFeatures view = f.viewer.see(1, T);
   view.T_map_camera = T;
-  LandmarkSet set;
+  LandmarkSet set = f.map.empty_landmark_set();
   const std::uint32_t first = 0;
-  set.assign(f.map, {&first, 1}, 1000);
-  const Registration found = f.registration.guided(view, &set, T, 10, 1);
+  f.map.collect_landmarks({&first, 1}, 1000, &set);
+  const Registration found = register_near(view, T, 10, 1, &set, &f.solver);
   ASSERT_TRUE(found.is_found);
   const std::uint32_t num_before = f.map.num_alive_landmarks();
   const std::uint32_t keyframe = insert_keyframe(1, 0, view, found.inliers, &f.map);
@@ -46,11 +46,11 @@ TEST(KeyframeInsertion, FusingMakesOneLandmarkOfOnePoint) {
   TrueKeyframes f(testing::make_room());
   f.add(looking({0, 0, 1.4}, 0));
   const std::uint32_t second = f.add(looking({0.1, 0.05, 1.4}, 0.05));
-  LandmarkSet set;
+  LandmarkSet set = f.map.empty_landmark_set();
   const std::uint32_t first = 0;
-  set.assign(f.map, {&first, 1}, 1000);
+  f.map.collect_landmarks({&first, 1}, 1000, &set);
   const std::uint32_t num_before = f.map.num_alive_landmarks();
-  const int num_fused = fuse_into_keyframe(&set, second, 4, &f.registration, &f.map);
+  const int num_fused = fuse_into_keyframe(&set, second, 4, &f.solver, &f.map);
   EXPECT_GE(num_fused, 150);
   EXPECT_LT(f.map.num_alive_landmarks(), num_before - 100);
   std::size_t num_shared = 0, num_wrong = 0;
@@ -62,8 +62,8 @@ TEST(KeyframeInsertion, FusingMakesOneLandmarkOfOnePoint) {
   EXPECT_EQ(num_shared, static_cast<std::size_t>(num_fused));
   EXPECT_LE(num_wrong, num_shared / 50);
   // Asked again there is nothing left to do.
-  set.assign(f.map, {&first, 1}, 1000);
-  EXPECT_LE(fuse_into_keyframe(&set, second, 4, &f.registration, &f.map), num_fused / 20);
+  f.map.collect_landmarks({&first, 1}, 1000, &set);
+  EXPECT_LE(fuse_into_keyframe(&set, second, 4, &f.solver, &f.map), num_fused / 20);
 }
 
 TEST(KeyframeInsertion, WhatLiesAtAnotherDepthIsNotFused) {
@@ -74,12 +74,12 @@ TEST(KeyframeInsertion, WhatLiesAtAnotherDepthIsNotFused) {
   view.T_map_camera = T;
   for (float& z : view.depth_m) z *= 0.8F;
   const std::uint32_t second = insert_keyframe(1, 0, view, {}, &f.map);
-  LandmarkSet set;
+  LandmarkSet set = f.map.empty_landmark_set();
   const std::uint32_t first = 0;
-  set.assign(f.map, {&first, 1}, 1000);
+  f.map.collect_landmarks({&first, 1}, 1000, &set);
   std::size_t num_holes = 0;
   for (const float z : view.depth_m) num_holes += z > 0 ? 0U : 1U;
-  EXPECT_LE(fuse_into_keyframe(&set, second, 4, &f.registration, &f.map), static_cast<int>(num_holes));
+  EXPECT_LE(fuse_into_keyframe(&set, second, 4, &f.solver, &f.map), static_cast<int>(num_holes));
 }
 
 }  // namespace

@@ -31,9 +31,9 @@ struct Disturbed : TrueKeyframes {
     for (const Rigid3& T : truth) {
       const std::uint32_t k = add(T);
       if (!keyframes.empty()) {
-        LandmarkSet set;
-        set.assign(map, keyframes, 4000);
-        fuse_into_keyframe(&set, k, 4, &registration, &map);
+        LandmarkSet set = map.empty_landmark_set();
+        map.collect_landmarks(keyframes, 4000, &set);
+        fuse_into_keyframe(&set, k, 4, &solver, &map);
       }
       keyframes.push_back(k);
     }

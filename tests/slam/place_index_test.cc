@@ -79,7 +79,7 @@ TEST(PlaceIndex, EmptyAndCrowdedPlacesAreTaken) {
   const auto ranked = index.query(place(4, 3000), 100);
   ASSERT_FALSE(ranked.empty());
   EXPECT_EQ(ranked[0].keyframe, 4U);
-  for (const RankedPlace& r : ranked) EXPECT_NE(r.keyframe % 3, 0U);  // a place without features is like nothing
+  for (const RankedKeyframe& r : ranked) EXPECT_NE(r.keyframe % 3, 0U);  // a place without features is like nothing
 }
 
 TEST(PlaceIndex, OnlyEmptyPlaces) {

@@ -16,7 +16,7 @@ struct TrueKeyframes {
   World world;
   Viewer viewer{world};
   SlamMap map{viewer.camera(), 1.2F, 8};
-  ViewRegistration registration{viewer.camera(), 1.2F, RegistrationOptions{.max_features = 600}};
+  PoseSolver solver{viewer.camera(), map.levels(), mapping_solver_options(600)};
   std::vector<std::vector<std::uint32_t>> shown;
 
   explicit TrueKeyframes(World w) : world(std::move(w)) {}

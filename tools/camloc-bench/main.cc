@@ -160,15 +160,14 @@ camloc::Status bench(const BenchArguments& arguments) {
   if (arguments.has_reference)
     contestants.push_back(new_contestant("opencv", {"extract (cv::ORB)", "match (BFMatcher)", "estimate (PnP)", "total"}));
 
+  camloc::tools::SequenceRunOptions run_options = arguments.run;
+  run_options.clock = clock;
   std::uint64_t num_frames = 0;
   std::vector<camloc::StampedPose> truth;
   for (int pass = 0; pass < arguments.repeat; ++pass) {
-    auto run = camloc::tools::open_sequence_run(arguments.run);
+    auto run = camloc::tools::open_sequence_run(run_options);
     if (!run) return run.status();
-    camloc::LocalizerOptions options;
-    options.use_tracking = !arguments.run.is_single;
-    options.now_ns = clock;
-    camloc::Localizer localizer(*run->map, run->camera, options);
+    camloc::Localizer& localizer = *run->localizer;
     camloc::bench::ReferenceOptions reference_options;
     reference_options.is_tracking = !arguments.run.is_single;
     camloc::bench::OpencvReference reference(*run->map, run->camera, reference_options, clock);
@@ -204,6 +203,7 @@ int main(int argc, char** argv) {
   app.add_option("--map", arguments.run.map_path, "Map (.cmap)")->required();
   app.add_option("--sequence", arguments.run.sequence_url, "Folder or URL of the recording")->required();
   app.add_option("--camera", arguments.run.camera_path, "Camera file")->required();
+  app.add_option("--set", arguments.run.numbers, "For experiments: localizer.NAME=VALUE; an unknown NAME lists them all");
   app.add_option("--frames", arguments.run.frames, "Frames to use: start:stop:step[,...]");
   app.add_option("--mode", arguments.mode, "track: frames follow each other; single: every frame on its own")
       ->check(CLI::IsMember({"track", "single"}))

@@ -102,7 +102,7 @@ Status extract_features(const std::string& selection, const EpipolarArguments& a
     if (Status check = extractor.check(frame); !check) return check;
     ViewFeatures& view = (*views)[frame.stamp_ns];
     const Rigid3 T_map_camera = view.T_map_camera;
-    view = extractor.extract(frame);
+    extractor.extract(frame, &view);
     view.T_map_camera = T_map_camera;
     progress.show(++num_read);
     return Status::ok();

@@ -61,15 +61,15 @@ Json record_json(const Localization& result) {
           {"quality", result.quality},
           {"tracked", result.is_tracked},
           {"features", result.num_features},
-          {"visible", result.num_visible},
-          {"matches", result.num_matches},
-          {"inliers", result.num_inliers},
-          {"inlier_ratio", result.inlier_ratio},
-          {"spread", result.spread},
+          {"visible", result.evidence.num_visible},
+          {"matches", result.evidence.num_matches},
+          {"inliers", result.evidence.num_inliers},
+          {"inlier_ratio", result.evidence.inlier_ratio()},
+          {"spread", result.evidence.spread},
           {"margin", result.margin},
-          {"depth_agreement", result.depth_agreement},
-          {"map_depth_agreement", result.map_depth_agreement},
-          {"focal_scale", result.focal_scale},
+          {"depth_agreement", result.evidence.depth_agreement},
+          {"map_depth_agreement", result.evidence.map_depth_agreement},
+          {"focal_scale", result.evidence.focal_scale},
           {"reset_counter", result.reset_counter},
           {"jump_m", result.jump_m},
           {"latency_ms", latency_json(result)}};
@@ -166,6 +166,7 @@ void add_localize_command(CLI::App& app, int& exit_code) {
   command->add_option("--map", arguments->run.map_path, "Map (.cmap)")->required();
   command->add_option("--sequence", arguments->run.sequence_url, "Folder or URL of the recording")->required();
   command->add_option("--camera", arguments->run.camera_path, "Camera file (TOML, or YAML of kalibr, ROS, OpenCV)")->required();
+  command->add_option("--set", arguments->run.numbers, "For experiments: localizer.NAME=VALUE; an unknown NAME lists them all");
   command->add_option("--out", arguments->out_path, "Trajectory to write: TUM format, LOCALIZED frames, T_map_camera")->required();
   command->add_option("--frames", arguments->run.frames, "Frames to use: start:stop:step[,...], as Python slices (default: all)");
   command->add_option("--exclude", arguments->run.exclude, "Frames to leave out, same form");

@@ -27,6 +27,16 @@ Status check_sizes(const FrameSourceInfo& info, const RgbdCamera& camera, const 
   return Status::ok();
 }
 
+/// "localizer.NAME=VALUE" into the numbers that the localizer weighs by.
+Status set_localizer_number(const std::string& assignment, LocalizerNumbers* numbers) {
+  constexpr std::string_view kGroup = "localizer.";
+  const bool is_ours = assignment.starts_with(kGroup);
+  const Status status =
+      is_ours ? set_number(localizer_number_table(), std::string_view(assignment).substr(kGroup.size()), numbers)
+              : Status(ErrorCode::kInvalid, assignment + ": is not localizer.NAME=VALUE");
+  return status.with_context("--set");
+}
+
 /// The text becomes part of a URL, so anything but slices must end here.
 Status check_selection(const std::string& option, const std::string& text) {
   return text.empty() ? Status::ok() : select_frames(text, "", 1).status().with_context(option);
@@ -45,6 +55,9 @@ Result<SequenceRun> open_sequence_run(const SequenceRunOptions& options) {
     if (!perturbation) return perturbation.status();
     run.perturbations.push_back(*perturbation);
   }
+  for (const std::string& assignment : options.numbers) {
+    if (Status status = set_localizer_number(assignment, &run.localizer_options.numbers); !status) return status;
+  }
   if (Status status = check_selection("--frames", options.frames); !status) return status;
   if (Status status = check_selection("--exclude", options.exclude); !status) return status;
   auto camera = read_camera_file(options.camera_path);
@@ -58,11 +71,10 @@ Result<SequenceRun> open_sequence_run(const SequenceRunOptions& options) {
   run.source = std::move(source).value();
   if (Status status = check_sizes(run.source->info(), run.camera, options.camera_path); !status) return status;
 
-  LocalizerOptions localizer;
-  localizer.use_tracking = !options.is_single;
-  localizer.use_depth = options.use_depth;
-  localizer.now_ns = monotonic_ns;
-  run.localizer = std::make_unique<Localizer>(*run.map, run.camera, localizer);
+  run.localizer_options.use_tracking = !options.is_single;
+  run.localizer_options.use_depth = options.use_depth;
+  run.localizer_options.now_ns = options.clock != nullptr ? options.clock : monotonic_ns;
+  run.localizer = std::make_unique<Localizer>(*run.map, run.camera, run.localizer_options);
   return run;
 }
 

@@ -27,6 +27,8 @@ struct SequenceRunOptions {
   bool is_single = false;  ///< every frame is a kidnapped robot
   bool use_depth = true;
   std::vector<std::string> perturbations;
+  StageTimer::Clock clock = nullptr;  ///< of stage times; monotonic_ns where there is none
+  std::vector<std::string> numbers;  ///< "localizer.NAME=VALUE", for experiments
 };
 
 /// Map, camera and source, opened and checked against each other. Members are destroyed in reverse order.
@@ -35,6 +37,7 @@ struct SequenceRun {
   RgbdCamera camera;
   std::unique_ptr<FrameSource> source;
   std::vector<Perturbation> perturbations;
+  LocalizerOptions localizer_options;
   std::unique_ptr<Localizer> localizer;
 };
 

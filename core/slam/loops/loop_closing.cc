@@ -17,12 +17,13 @@ constexpr float kFuseRadiusPx = 8;
 
 }  // namespace
 
-LoopCloser::LoopCloser(const LoopOptions& options, SlamMap* map, ViewRegistration* registration)
+LoopCloser::LoopCloser(const LoopOptions& options, SlamMap* map, PoseSolver* solver)
     : options_(options),
       map_(map),
-      registration_(registration),
+      solver_(solver),
       reckoning_(options, map),
-      detector_(options, map, registration, &reckoning_) {}
+      detector_(options, map, solver, &reckoning_),
+      place_landmarks_(map->empty_landmark_set()) {}
 
 void LoopCloser::add_link(const PoseGraphEdge& link) {
   links_.push_back(link);
@@ -37,7 +38,7 @@ LoopReport LoopCloser::consider(std::uint32_t keyframe, const PlaceIndex& places
   report.is_found = true;
   report.place = match->place;
   report.T_place_keyframe = match->T_place_keyframe;
-  report.num_inliers = match->registration.num_inliers();
+  report.num_inliers = match->registration.num_inliers;
   const double strain = match->strain;
   std::erase_if(pending_, [&](const LoopMatch& p) { return keyframe > p.keyframe + kMaxPendingGap || !agrees(p, *match); });
   pending_.push_back(std::move(*match));
@@ -138,7 +139,7 @@ void LoopCloser::move_to(const std::vector<Rigid3>& T_map_keyframe) {
 // What both sides saw becomes one.
 void LoopCloser::fuse(const std::vector<LoopMatch>& matches) {
   for (const LoopMatch& match : matches) {
-    for (const RegisteredPair& pair : match.registration.inliers) {
+    for (const LandmarkObservation& pair : match.registration.inliers) {
       const std::int32_t into = map_->resolve(pair.landmark);
       const std::int32_t present = map_->keyframe(match.keyframe).landmark_of_feature[pair.feature];
       if (into == kNoLandmark || present == into) continue;
@@ -162,8 +163,8 @@ void LoopCloser::fuse_surroundings(const LoopMatch& last) {
     if (now.size() < 2 * options_.keyframes_per_place && !is_then) now.push_back(c.keyframe);
   }
   for (const std::uint32_t k : now) {
-    place_landmarks_.assign(*map_, then, options_.max_place_landmarks);
-    fuse_into_keyframe(&place_landmarks_, k, kFuseRadiusPx, registration_, map_);
+    map_->collect_landmarks(then, options_.max_place_landmarks, &place_landmarks_);
+    fuse_into_keyframe(&place_landmarks_, k, kFuseRadiusPx, solver_, map_);
   }
 }
 

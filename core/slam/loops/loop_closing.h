@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "core/optimize/pose_graph.h"
+#include "core/registration/view_registration.h"
 #include "core/slam/dead_reckoning.h"
 #include "core/slam/loops/loop_detection.h"
 #include "core/slam/loops/loop_options.h"
 #include "core/slam/loops/place_index.h"
 #include "core/slam/slam_map.h"
-#include "core/slam/view_registration.h"
 
 namespace camloc {
 
@@ -25,14 +25,14 @@ struct LoopReport {
   bool is_closed = false, is_joined = false;  ///< a loop in its segment; two segments became one
   bool is_refused = false;                    ///< confirmed, but the pose graph would have to stretch too far
   std::uint32_t place = 0;
-  int num_inliers = 0;
+  std::uint32_t num_inliers = 0;
   Rigid3 T_place_keyframe;
   double correction_m = 0, correction_rad = 0;
 };
 
 class LoopCloser {
  public:
-  LoopCloser(const LoopOptions& options, SlamMap* map, ViewRegistration* registration);
+  LoopCloser(const LoopOptions& options, SlamMap* map, PoseSolver* solver);
   LoopCloser(const LoopCloser&) = delete;
   LoopCloser& operator=(const LoopCloser&) = delete;
 
@@ -53,7 +53,7 @@ class LoopCloser {
 
   LoopOptions options_;
   SlamMap* map_;
-  ViewRegistration* registration_;
+  PoseSolver* solver_;
   DeadReckoning reckoning_;
   LoopDetector detector_;
   LandmarkSet place_landmarks_;

@@ -17,13 +17,13 @@ std::optional<LoopMatch> LoopDetector::find(std::uint32_t keyframe, const PlaceI
   std::vector<Candidate> candidates;
   for (const std::uint32_t place : nearby_keyframes(keyframe, is_linked)) try_place(keyframe, place, true, &candidates);
   std::size_t num_tried = 0;
-  for (const RankedPlace& ranked : places.query(query.view.features.descriptors, options_.num_retrieved)) {
+  for (const RankedKeyframe& ranked : places.query(query.view.features.descriptors, options_.num_retrieved)) {
     if (ranked.keyframe >= is_linked.size() || is_linked[ranked.keyframe] != 0 || !reckoning_->may_see(keyframe, ranked.keyframe)) continue;
     if (num_tried++ == options_.num_candidates) break;
     try_place(keyframe, ranked.keyframe, false, &candidates);
   }
   const auto best = std::max_element(candidates.begin(), candidates.end(),
-                                     [](const Candidate& a, const Candidate& b) { return a.found.num_inliers() < b.found.num_inliers(); });
+                                     [](const Candidate& a, const Candidate& b) { return a.found.num_inliers < b.found.num_inliers; });
   if (best == candidates.end() || !is_convincing(best->found, options_.place) || has_rival(*best, candidates)) return std::nullopt;
   const Rigid3 T_map_place = map_->keyframe(best->place).view.T_map_camera;
   LoopMatch match;
@@ -68,11 +68,11 @@ std::vector<std::uint32_t> LoopDetector::nearby_keyframes(std::uint32_t keyframe
 
 void LoopDetector::try_place(std::uint32_t keyframe, std::uint32_t place, bool is_nearby, std::vector<Candidate>* candidates) {
   const auto keyframes = map_->surroundings(place, kMinSurroundingShared, options_.keyframes_per_place);
-  place_landmarks_.assign(*map_, keyframes, options_.max_place_landmarks);
+  map_->collect_landmarks(keyframes, options_.max_place_landmarks, &place_landmarks_);
   const SlamKeyframe& query = map_->keyframe(keyframe);
   Registration found =
-      is_nearby ? registration_->guided(query.view, &place_landmarks_, query.view.T_map_camera, options_.nearby_radius_px, query.frame)
-                : registration_->unguided(query.view, &place_landmarks_, query.frame);
+      is_nearby ? register_near(query.view, query.view.T_map_camera, options_.nearby_radius_px, query.frame, &place_landmarks_, solver_)
+                : register_anywhere(query.view, query.frame, &place_landmarks_, solver_);
   if (!found.is_found) return;
   const double strain = reckoning_->strain(keyframe, place, found.T_map_camera);
   if (strain <= DeadReckoning::kMaxStrain) candidates->push_back({place, strain, std::move(found)});
@@ -81,7 +81,7 @@ void LoopDetector::try_place(std::uint32_t keyframe, std::uint32_t place, bool i
 bool LoopDetector::has_rival(const Candidate& best, const std::vector<Candidate>& candidates) const {
   return std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
     const bool is_comparable = map_->keyframe(other.place).segment == map_->keyframe(best.place).segment;
-    return is_comparable && is_rival(other.found, best.found, options_.place);
+    return is_comparable && is_strong_rival(other.found, best.found);
   });
 }
 

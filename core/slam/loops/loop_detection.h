@@ -13,12 +13,12 @@
 #include <optional>
 #include <vector>
 
+#include "core/registration/landmark_set.h"
+#include "core/registration/view_registration.h"
 #include "core/slam/dead_reckoning.h"
-#include "core/slam/landmark_set.h"
 #include "core/slam/loops/loop_options.h"
 #include "core/slam/loops/place_index.h"
 #include "core/slam/slam_map.h"
-#include "core/slam/view_registration.h"
 
 namespace camloc {
 
@@ -34,8 +34,8 @@ struct LoopMatch {
 
 class LoopDetector {
  public:
-  LoopDetector(const LoopOptions& options, const SlamMap* map, ViewRegistration* registration, const DeadReckoning* reckoning)
-      : options_(options), map_(map), registration_(registration), reckoning_(reckoning) {}
+  LoopDetector(const LoopOptions& options, const SlamMap* map, PoseSolver* solver, const DeadReckoning* reckoning)
+      : options_(options), map_(map), solver_(solver), reckoning_(reckoning), place_landmarks_(map->empty_landmark_set()) {}
 
   /// The place that a keyframe of the map saw again, if there is one without doubt.
   [[nodiscard]] std::optional<LoopMatch> find(std::uint32_t keyframe, const PlaceIndex& places);
@@ -53,7 +53,7 @@ class LoopDetector {
 
   LoopOptions options_;
   const SlamMap* map_;
-  ViewRegistration* registration_;
+  PoseSolver* solver_;
   const DeadReckoning* reckoning_;
   LandmarkSet place_landmarks_;
 };

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/slam/view_registration.h"
+#include "core/registration/view_registration.h"
 
 namespace camloc {
 

@@ -44,45 +44,40 @@ void PlaceIndex::train() {
   for (std::uint32_t k = 0; k < descriptors_.size(); ++k) enter(k);
 }
 
-std::vector<float> PlaceIndex::word_counts(std::span<const Descriptor> descriptors) const {
-  std::vector<float> counts(words_.size(), 0);
+std::vector<std::uint32_t> PlaceIndex::word_counts(std::span<const Descriptor> descriptors) const {
+  std::vector<std::uint32_t> counts(words_.size());
   std::vector<NearestDescriptor> nearest(descriptors.size());
-  nearest_descriptors(descriptors, words_, nearest.data());
-  for (const NearestDescriptor& n : nearest) counts[n.index] += 1;
+  count_words(descriptors, words_, nearest, counts);
   return counts;
 }
 
 void PlaceIndex::enter(std::uint32_t keyframe) {
-  const std::vector<float> counts = word_counts(descriptors_[keyframe]);
+  const std::vector<std::uint32_t> counts = word_counts(descriptors_[keyframe]);
   for (std::size_t w = 0; w < counts.size(); ++w) {
-    if (counts[w] > 0) entries_[w].push_back({keyframe, counts[w]});
+    if (counts[w] > 0) entries_[w].push_back({keyframe, static_cast<float>(counts[w])});
   }
 }
 
-std::vector<RankedPlace> PlaceIndex::query(std::span<const Descriptor> descriptors, std::size_t count) const {
+std::vector<RankedKeyframe> PlaceIndex::query(std::span<const Descriptor> descriptors, std::size_t count) const {
   if (words_.empty() || descriptors.empty()) return {};
-  const std::vector<float> counts = word_counts(descriptors);
-  std::vector<float> dot(descriptors_.size(), 0), norm(descriptors_.size(), 0);
+  const std::vector<std::uint32_t> counts = word_counts(descriptors);
+  std::vector<float> scores(descriptors_.size(), 0), norm(descriptors_.size(), 0);
   float query_norm = 0;
   for (std::size_t w = 0; w < words_.size(); ++w) {
     if (entries_[w].empty()) continue;
     const auto idf = static_cast<float>(inverse_document_frequency(descriptors_.size(), entries_[w].size()));
-    const float weight = counts[w] * idf;
+    const float weight = static_cast<float>(counts[w]) * idf;
     query_norm += weight * weight;
     for (const Entry& e : entries_[w]) {
-      dot[e.keyframe] += weight * e.count * idf;
+      scores[e.keyframe] += weight * e.count * idf;
       norm[e.keyframe] += e.count * e.count * idf * idf;
     }
   }
-  std::vector<RankedPlace> ranked;
-  for (std::uint32_t k = 0; k < dot.size(); ++k) {
-    if (dot[k] > 0) ranked.push_back({k, dot[k] / std::sqrt(norm[k] * query_norm)});
+  for (std::size_t k = 0; k < scores.size(); ++k) {
+    if (scores[k] > 0) scores[k] /= std::sqrt(norm[k] * query_norm);
   }
-  const auto end = ranked.begin() + static_cast<std::ptrdiff_t>(std::min(count, ranked.size()));
-  std::partial_sort(ranked.begin(), end, ranked.end(), [](const RankedPlace& a, const RankedPlace& b) {
-    return a.score != b.score ? a.score > b.score : a.keyframe < b.keyframe;
-  });
-  ranked.erase(end, ranked.end());
+  std::vector<RankedKeyframe> ranked;
+  ranked.resize(rank_keyframes(scores, static_cast<int>(count), &ranked).size());
   return ranked;
 }
 

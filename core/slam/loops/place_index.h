@@ -11,14 +11,9 @@
 #include <vector>
 
 #include "core/features/descriptor.h"
-#include "core/features/hamming.h"
+#include "core/registration/tfidf.h"
 
 namespace camloc {
-
-struct RankedPlace {
-  std::uint32_t keyframe = 0;
-  float score = 0;  ///< cosine of the two tf-idf vectors
-};
 
 /// Not thread-safe. The same keyframes in the same order give the same bits.
 class PlaceIndex {
@@ -26,7 +21,7 @@ class PlaceIndex {
   /// Keyframes are numbered in the order of these calls.
   void add(std::span<const Descriptor> descriptors);
   /// The `count` most alike, best first; ties by index. Empty before the first words are trained.
-  [[nodiscard]] std::vector<RankedPlace> query(std::span<const Descriptor> descriptors, std::size_t count) const;
+  [[nodiscard]] std::vector<RankedKeyframe> query(std::span<const Descriptor> descriptors, std::size_t count) const;
 
  private:
   struct Entry {
@@ -35,7 +30,7 @@ class PlaceIndex {
   };
   void train();
   void enter(std::uint32_t keyframe);
-  [[nodiscard]] std::vector<float> word_counts(std::span<const Descriptor> descriptors) const;
+  [[nodiscard]] std::vector<std::uint32_t> word_counts(std::span<const Descriptor> descriptors) const;
 
   std::vector<std::vector<Descriptor>> descriptors_;  ///< a sample of each keyframe's
   std::vector<Descriptor> words_;

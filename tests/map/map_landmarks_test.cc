@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Against a walk over all landmarks in double precision: what is clearly in view is projected, what is clearly not is not.
-#include "core/localize/local_landmarks.h"
+#include "core/map/map_landmarks.h"
 
 #include <gtest/gtest.h>
 
@@ -22,11 +22,11 @@ enum class InView { kYes, kNo, kUnclear };
 int side(double slack, double tolerance) { return slack > tolerance ? 1 : slack < -tolerance ? -1 : 0; }
 
 InView in_view(const MapView& map, std::uint32_t landmark, const Rigid3& T_map_camera, const Intrinsics& camera,
-               const LocalLandmarksOptions& options, Eigen::Vector2d* pixel) {
+               const MapLandmarksOptions& options, Eigen::Vector2d* pixel) {
   const auto& record = map.landmarks()[landmark];
   const Eigen::Vector3d p_map = map.position_m(landmark).cast<double>();
   const Eigen::Vector3d p = T_map_camera.inverse() * p_map;
-  int worst = std::min(side(p.z() - 0.2, 1e-4), side(options.max_range_m - p.z(), 1e-4));
+  int worst = std::min(side(p.z() - 0.2, 1e-4), side(options.limits.max_range_m - p.z(), 1e-4));
   if (worst < 0) return InView::kNo;
   *pixel = camera.project(p);
   for (const double slack : {pixel->x(), pixel->y(), camera.width - 1 - pixel->x(), camera.height - 1 - pixel->y()}) {
@@ -35,13 +35,13 @@ InView in_view(const MapView& map, std::uint32_t landmark, const Rigid3& T_map_c
   const Eigen::Vector3d to_camera = T_map_camera.translation - p_map;
   const double angle = std::acos(std::clamp(to_camera.normalized().dot(MapView::direction(record).cast<double>()), -1.0, 1.0));
   const double widest = std::acos(std::clamp(static_cast<double>(MapView::view_cosine(record)), -1.0, 1.0));
-  worst = std::min(worst, side(widest + options.view_angle_margin_rad - angle, 2e-3));
+  worst = std::min(worst, side(widest + options.limits.view_angle_margin_rad - angle, 2e-3));
   // Level at which a patch of its size would be found, from the nearest and the farthest view it was mapped from.
   const double log_scale = std::log(map.info().orb_scale_factor);
   const double low = std::log(MapView::reference_m(record.min_reference) / to_camera.norm()) / log_scale;
   const double high = std::log(MapView::reference_m(record.max_reference) / to_camera.norm()) / log_scale;
-  worst = std::min({worst, side(std::ceil(high + 1e-3) + options.level_margin + 0.5, 1e-3),
-                    side(map.info().orb_num_levels - 0.5 - (std::floor(low - 1e-3) - options.level_margin), 1e-3)});
+  worst = std::min({worst, side(std::ceil(high + 1e-3) + options.limits.level_margin + 0.5, 1e-3),
+                    side(map.info().orb_num_levels - 0.5 - (std::floor(low - 1e-3) - options.limits.level_margin), 1e-3)});
   if (std::abs(high - std::round(high)) < 1e-3 || std::abs(low - std::round(low)) < 1e-3) worst = std::min(worst, 0);
   return worst > 0 ? InView::kYes : worst < 0 ? InView::kNo : InView::kUnclear;
 }
@@ -51,10 +51,10 @@ const testing::MapOnDisk& flat() {
   return map;
 }
 
-class LocalLandmarksInView : public ::testing::TestWithParam<int> {};
-INSTANTIATE_TEST_SUITE_P(Poses, LocalLandmarksInView, ::testing::Range(0, 20));
+class MapLandmarksInView : public ::testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Poses, MapLandmarksInView, ::testing::Range(0, 20));
 
-TEST_P(LocalLandmarksInView, AreProjectedAndNoOthers) {
+TEST_P(MapLandmarksInView, AreProjectedAndNoOthers) {
   const MapView& map = *flat().view;
   testing::Random random(static_cast<std::uint32_t>(GetParam()));
   const Rigid3 T_map_camera{random.rotation(), 6 * random.direction()};
@@ -63,8 +63,8 @@ TEST_P(LocalLandmarksInView, AreProjectedAndNoOthers) {
     camera.lens = LensModel::kBrownConrady;
     camera.distortion = {-0.1, 0.01, 0.001, -0.002, 0};
   }
-  const LocalLandmarksOptions options{.max_landmarks = 6000, .max_cubes = 1000};
-  LocalLandmarks local(map, camera, options);
+  const MapLandmarksOptions options{.max_landmarks = 6000, .max_cubes = 1000};
+  MapLandmarks local(map, camera, options);
   std::map<std::uint32_t, ProjectedLandmark> projected;
   for (const auto& landmark : local.project(T_map_camera, 9.0F)) {
     EXPECT_TRUE(projected.emplace(static_cast<std::uint32_t>(landmark.landmark), landmark).second) << "twice";
@@ -99,17 +99,17 @@ Rigid3 looking_in() {
   return {Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), -at), at};
 }
 
-TEST(LocalLandmarks, KeepsTheMostObserved) {
+TEST(MapLandmarks, KeepsTheMostObserved) {
   const MapView& map = *flat().view;
   const Intrinsics camera = sample_camera(640, 480).color;
-  LocalLandmarks all(map, camera, {.max_landmarks = 6000, .max_cubes = 1000});
+  MapLandmarks all(map, camera, {.max_landmarks = 6000, .max_cubes = 1000});
   const auto everything = all.project(looking_in(), 5);
   std::set<std::int32_t> in_view;
   for (const auto& landmark : everything) in_view.insert(landmark.landmark);
   ASSERT_GT(in_view.size(), 60U);
   constexpr int kLimit = 40;
   ASSERT_LT(in_view.size(), 4U * kLimit) << "no more than are looked at before choosing";
-  LocalLandmarks some(map, camera, {.max_landmarks = kLimit, .max_cubes = 1000});
+  MapLandmarks some(map, camera, {.max_landmarks = kLimit, .max_cubes = 1000});
   std::set<std::int32_t> kept;
   int fewest_kept = 255, most_dropped = 0;
   for (const auto& landmark : some.project(looking_in(), 5)) {
@@ -127,12 +127,10 @@ TEST(LocalLandmarks, KeepsTheMostObserved) {
   EXPECT_GE(fewest_kept, most_dropped);
 }
 
-TEST(LocalLandmarks, EveryLimitHolds) {
+TEST(MapLandmarks, EveryLimitHolds) {
   const MapView& map = *flat().view;
   const Intrinsics camera = sample_camera(640, 480).color;
-  const auto count = [&](const LocalLandmarksOptions& options) {
-    return LocalLandmarks(map, camera, options).project(looking_in(), 5).size();
-  };
+  const auto count = [&](const MapLandmarksOptions& options) { return MapLandmarks(map, camera, options).project(looking_in(), 5).size(); };
   const std::size_t all = count({.max_landmarks = 6000, .max_cubes = 1000});
   EXPECT_EQ(count({.max_landmarks = 1}), 1U);
   EXPECT_EQ(count({.max_landmarks = 6000, .max_cubes = 0}), 0U);
@@ -141,12 +139,12 @@ TEST(LocalLandmarks, EveryLimitHolds) {
                     half = count({.max_landmarks = 6000, .max_cubes = 1000, .max_visited = 1500});
   EXPECT_LT(near, all);
   EXPECT_LT(half, all);
-  EXPECT_LT(count({.max_landmarks = 6000, .max_cubes = 1000, .max_visited = 60000, .max_range_m = 4}), all);
+  EXPECT_LT(count({.max_landmarks = 6000, .max_cubes = 1000, .max_visited = 60000, .limits = {.max_range_m = 4}}), all);
 }
 
-TEST(LocalLandmarks, AMappedViewIsSeenAgain) {
+TEST(MapLandmarks, AMappedViewIsSeenAgain) {
   const testing::SampleWorld& world = testing::SampleWorld::get();
-  LocalLandmarks local(world.map(), world.camera().color, {});
+  MapLandmarks local(world.map(), world.camera().color, {});
   std::vector<std::uint32_t> list(world.map().info().max_keyframe_landmarks);
   std::set<std::uint32_t> projected;
   for (const auto& landmark : local.project(world.map().keyframe_pose(0), 5))

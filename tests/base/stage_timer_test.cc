@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/localize/stage_timer.h"
+#include "core/base/stage_timer.h"
 
 #include <gtest/gtest.h>
 

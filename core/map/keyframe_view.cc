@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/merge/keyframe_view.h"
+#include "core/map/keyframe_view.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Which landmarks are gathered, and where they appear in an image.
-#include "core/slam/landmark_set.h"
+#include "core/registration/landmark_set.h"
 
 #include <gtest/gtest.h>
 
@@ -21,14 +21,14 @@ void add_three(TrueKeyframes* f) {
 TEST(LandmarkSet, HoldsEachLandmarkOnceInTheOrderOfTheKeyframes) {
   TrueKeyframes f(testing::make_room());
   add_three(&f);
-  LandmarkSet set;
+  LandmarkSet set = f.map.empty_landmark_set();
   const std::uint32_t keyframes[] = {2, 1, 2};
-  set.assign(f.map, keyframes, 100000);
+  f.map.collect_landmarks(keyframes, 100000, &set);
   EXPECT_EQ(set.size(), f.map.keyframe(2).num_landmarks + f.map.keyframe(1).num_landmarks);  // none are shared
   EXPECT_EQ(f.map.landmark(set.id(0)).sightings.front().keyframe, 2U);
-  EXPECT_EQ(set.position_m(0), f.map.landmark(set.id(0)).position_m);
+  EXPECT_EQ(set.position_m(0), f.map.landmark(set.id(0)).position_m.cast<float>());
   EXPECT_EQ(set.descriptors().size(), set.size());
-  set.assign(f.map, keyframes, 50);
+  f.map.collect_landmarks(keyframes, 50, &set);
   EXPECT_EQ(set.size(), 50U);
 }
 
@@ -36,10 +36,10 @@ TEST(LandmarkSet, ProjectsWhatIsInView) {
   TrueKeyframes f(testing::make_room());
   add_three(&f);
   const Rigid3 T = f.map.keyframe(0).view.T_map_camera;
-  LandmarkSet set;
+  LandmarkSet set = f.map.empty_landmark_set();
   const std::uint32_t keyframe = 0;
-  set.assign(f.map, {&keyframe, 1}, 100000);
-  const auto visible = set.project(T, 9, ProjectionLimits{});
+  f.map.collect_landmarks({&keyframe, 1}, 100000, &set);
+  const auto visible = set.project(T, 9);
   // From where they were made all are in view, at their features.
   EXPECT_GE(visible.size() + 3, set.size());
   for (const ProjectedLandmark& p : visible) {
@@ -52,9 +52,8 @@ TEST(LandmarkSet, ProjectsWhatIsInView) {
     EXPECT_EQ(p.radius_px, 9);
   }
   // From behind, from far aside and from far away there is nothing to see.
-  EXPECT_TRUE(set.project(looking({0, 0, 1.4}, 3.0), 9, ProjectionLimits{}).empty());
-  EXPECT_TRUE(set.project(looking({50, 0, 1.4}, std::numbers::pi), 9, ProjectionLimits{}).empty());
-  EXPECT_TRUE(set.project(T, 9, ProjectionLimits{.max_range_m = 0.5}).empty());
+  EXPECT_TRUE(set.project(looking({0, 0, 1.4}, 3.0), 9).empty());
+  EXPECT_TRUE(set.project(looking({50, 0, 1.4}, std::numbers::pi), 9).empty());
 }
 
 }  // namespace

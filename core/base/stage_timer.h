@@ -7,9 +7,10 @@
 #include <array>
 #include <cstdint>
 
-#include "core/localize/localization.h"
-
 namespace camloc {
+
+enum class Stage : std::uint8_t { kExtract, kCandidates, kMatch, kEstimate, kVerify, kTotal };
+inline constexpr int kNumStages = 6;
 
 class StageTimer {
  public:

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A place is found in the whole map; where the map holds the place twice, nobody says which one it is.
-#include "core/localize/global_search.h"
+#include "core/localize/retrieval_proposer.h"
 
 #include <gtest/gtest.h>
 
@@ -19,35 +19,55 @@ MapData with_twin(std::uint32_t percent) {
 }
 
 struct Searched {
-  GlobalSearchResult result;
+  Localization result;
   double error = 0;
 };
 
 Searched search(const MapView& map, std::uint64_t index) {
   const SampleWorld& world = SampleWorld::get();
-  StageTimer timer(nullptr);
-  FrameObservations observations(world.camera(), OrbOptions{}, true);
-  PoseEstimator estimator(map, world.camera(), OrbOptions{}, PoseEstimatorOptions{}, &timer);
-  GlobalSearch global(map, OrbOptions{}, GlobalSearchOptions{}, &timer);
+  Localizer localizer(map, world.camera(), {.orb = {}, .use_tracking = false});
   const FrameBuffer frame = world.frame(index);
-  EXPECT_TRUE(observations.observe(frame.view()));
-  const GlobalSearchResult result = global.search(observations, estimator, index);
-  return {result, pose_error(sample_pose(index), result.best.T_map_camera).norm()};
+  const Localization& result = localizer.process(frame.view());
+  return {result, pose_error(sample_pose(index), result.evidence.T_map_camera).norm()};
 }
 
-TEST(GlobalSearch, FindsThePlace) {
+TEST(RetrievalProposer, ProposesViewsOfThePlace) {
+  const SampleWorld& world = SampleWorld::get();
+  const LocalizerNumbers numbers;
+  RetrievalProposer proposer({&world.map(), &world.camera(), &numbers, 1000});
+  ViewExtractor extractor(world.camera(), OrbOptions{});
+  const Gate gate(numbers, true);
+  for (const std::uint64_t i : {1U, 31U, 61U, 89U}) {
+    ViewFeatures view;
+    const FrameBuffer frame = world.frame(i);
+    extractor.extract(frame.view(), &view);
+    const auto proposals = proposer.propose({0, &view, &gate});
+    ASSERT_FALSE(proposals.empty());
+    EXPECT_LE(proposals.size(), static_cast<std::size_t>(numbers.max_places));
+    for (const Proposal& proposal : proposals) {
+      EXPECT_GT(proposal.num_keyframes, 0);
+      EXPECT_LE(proposal.num_keyframes, numbers.max_keyframes_per_place);
+      EXPECT_FALSE(proposal.is_continuation || proposal.overrides_motion);
+      const Rigid3 first = world.map().keyframe_pose(proposal.places().front());
+      for (const std::uint32_t k : proposal.places())
+        EXPECT_LT((world.map().keyframe_pose(k).translation - first.translation).norm(), numbers.place_radius_m);
+    }
+    const Rigid3 nearest = world.map().keyframe_pose(proposals[0].places().front());
+    EXPECT_LT((nearest.translation - sample_pose(i).translation).norm(), 1.0) << i;
+  }
+}
+
+TEST(RetrievalProposer, FindsThePlace) {
   for (const std::uint64_t i : {1U, 31U, 61U, 89U}) {
     const auto [result, error] = search(SampleWorld::get().map(), i);
-    EXPECT_TRUE(result.has_candidates);
-    EXPECT_GE(result.num_places, 1);
-    ASSERT_TRUE(result.best.is_found) << i;
-    EXPECT_GT(result.best.num_inliers, 300U) << i;
+    ASSERT_TRUE(result.evidence.is_found) << i;
+    EXPECT_GT(result.evidence.num_inliers, 300U) << i;
     EXPECT_GT(result.margin, 0.8) << i;
     EXPECT_LT(error, 0.006) << i;
   }
 }
 
-TEST(GlobalSearch, MarginFallsWithALookAlike) {
+TEST(RetrievalProposer, MarginFallsWithALookAlike) {
   double last_margin = 1.2;
   for (const std::uint32_t percent : {0U, 30U, 60U, 100U}) {
     const testing::MapOnDisk map(with_twin(percent));
@@ -55,7 +75,7 @@ TEST(GlobalSearch, MarginFallsWithALookAlike) {
     double worst_margin = 1;
     for (const std::uint64_t i : {1U, 31U, 61U}) {
       const auto [result, error] = search(*map.view, i);
-      ASSERT_TRUE(result.best.is_found);
+      ASSERT_TRUE(result.evidence.is_found);
       if (percent < 100) { EXPECT_LT(error, 0.01) << "the place with more of its landmarks wins"; }
       worst_margin = std::min(worst_margin, result.margin);
     }
@@ -65,7 +85,7 @@ TEST(GlobalSearch, MarginFallsWithALookAlike) {
   EXPECT_LT(last_margin, 0.1);
 }
 
-TEST(GlobalSearch, TwinPlacesAreAmbiguous) {
+TEST(RetrievalProposer, TwinPlacesAreAmbiguous) {
   const SampleWorld& world = SampleWorld::get();
   const testing::MapOnDisk map(with_twin(100));
   ASSERT_NE(map.view, nullptr);
@@ -81,25 +101,11 @@ TEST(GlobalSearch, TwinPlacesAreAmbiguous) {
   }
 }
 
-TEST(GlobalSearch, NoWordsNoCandidates) {
-  const SampleWorld& world = SampleWorld::get();
-  MapData data = world.data();
-  data.words.clear();
-  data.inverted_file.clear();
-  const testing::MapOnDisk map(data);
-  if (map.view == nullptr) GTEST_SKIP() << "a map without words is refused";
-  Localizer localizer(*map.view, world.camera(), {});
-  const FrameBuffer frame = world.frame(1);
-  const Localization& result = localizer.process(frame.view());
-  EXPECT_EQ(result.state, State::kLost);
-  EXPECT_EQ(result.reason, Reason::kNoCandidates);
-}
-
-TEST(GlobalSearch, SeedChangesLittleAndSameSeedNothing) {
+TEST(RetrievalProposer, SameSeedSameBits) {
   const auto a = search(SampleWorld::get().map(), 40), b = search(SampleWorld::get().map(), 40);
   EXPECT_EQ(a.error, b.error);
-  EXPECT_EQ(a.result.best.num_inliers, b.result.best.num_inliers);
-  EXPECT_EQ(a.result.best.covariance, b.result.best.covariance);
+  EXPECT_EQ(a.result.evidence.num_inliers, b.result.evidence.num_inliers);
+  EXPECT_EQ(a.result.covariance, b.result.covariance);
 }
 
 }  // namespace

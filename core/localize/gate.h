@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// Is a verified pose believed, given what came before? The only thing in the localizer that remembers: the last pose and its motion,
+// a pose that contradicts them and is found again and again, when the camera was last lost, and when two places looked alike.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "core/localize/localization.h"
+#include "core/localize/localizer_numbers.h"
+#include "core/localize/motion_model.h"
+#include "core/registration/pose_evidence.h"
+
+namespace camloc {
+
+/// The best pose for a frame, together with the verdict on it.
+struct Candidate {
+  PoseEvidence evidence{};
+  double margin = 1;                    ///< see margin_of()
+  bool is_continuation = false;         ///< found where the motion so far predicts it
+  bool overrides_motion = false;        ///< found where somebody said, who knows better
+  Reason reason = Reason::kNotStarted;  ///< kNone: verified
+};
+
+class Gate {
+ public:
+  /// Without memory every frame is a kidnapped robot.
+  Gate(const LocalizerNumbers& numbers, bool has_memory);
+
+  void reset();
+  /// A frame begins; a clock that runs backwards ends what was known.
+  void begin(std::int64_t stamp_ns);
+
+  struct Prediction {
+    Rigid3 T_map_camera;
+    Matrix6d covariance;  ///< convention of pose_error()
+  };
+  /// Where the motion leads, while that is better than a look at the whole map.
+  [[nodiscard]] std::optional<Prediction> predict(std::int64_t stamp_ns) const {
+    return predict(stamp_ns, ns(numbers_.max_tracking_gap_s));
+  }
+  /// The same for as long as the caller wants.
+  [[nodiscard]] std::optional<Prediction> predict(std::int64_t stamp_ns, std::int64_t max_age_ns) const;
+
+  /// What becomes of the candidate's reason. Takes notice of places that look alike.
+  [[nodiscard]] Reason judge(std::int64_t stamp_ns, const Candidate& candidate);
+  /// The candidate is the pose. Returns how far that is from the prediction where the pose is no continuation, else 0.
+  double accept(std::int64_t stamp_ns, const Candidate& candidate);
+
+ private:
+  static std::int64_t ns(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
+  [[nodiscard]] bool is_thin(const Candidate& candidate) const { return candidate.evidence.num_inliers < numbers_.strong_inliers; }
+  [[nodiscard]] bool is_recent(std::int64_t stamp_ns, std::int64_t max_age_ns) const;
+  [[nodiscard]] bool fits_motion(std::int64_t stamp_ns, const Candidate& candidate) const;
+  [[nodiscard]] bool is_confirmed(std::int64_t stamp_ns, const Candidate& candidate);
+  [[nodiscard]] bool was_ambiguous(std::int64_t stamp_ns, const Candidate& candidate) const;
+
+  LocalizerNumbers numbers_;
+  bool has_memory_;
+  MotionModel motion_;
+  MotionModel unconfirmed_;                   ///< the last fix that contradicts the motion so far
+  std::int64_t unconfirmed_since_ns_ = 0;     ///< when fixes that agree with it began
+  std::optional<std::int64_t> ambiguous_ns_;  ///< when another place last explained a frame nearly as well
+};
+
+}  // namespace camloc

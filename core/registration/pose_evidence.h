@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// A pose and all that speaks for it and against it. Made by PoseSolver, never changed after; verification decides what it is worth.
+#pragma once
+
+#include <cstdint>
+
+#include "core/geometry/rigid3.h"
+
+namespace camloc {
+
+struct PoseEvidence {
+  bool is_found = false;
+  Rigid3 T_map_camera;
+  Matrix6d covariance = Matrix6d::Zero();  ///< of pose_error(): metres, radians, axes of `map`
+  std::uint32_t num_visible = 0;           ///< landmarks that should be in the image, as far as they were projected
+  std::uint32_t num_matches = 0;           ///< of those, found in their window; before guided refinement all that were given
+  std::uint32_t num_inliers = 0;
+  double spread = 0;  ///< share of the image's 8 x 6 cells that hold an inlier
+  std::uint32_t num_with_depth = 0;
+  double depth_agreement = 1;       ///< share of inliers with depth whose depth agrees
+  std::uint32_t num_map_depth = 0;  ///< landmarks in view whose pixel has a measured depth and that nothing hides
+  double map_depth_agreement = 1;   ///< share of those that lie on the measured surface; the others are seen through
+  double rms_px = 0, median_px = 0;
+  double focal_scale = 1;  ///< true / assumed focal length that fits these matches best
+  double focal_scale_sigma = 1;
+  bool has_focal_scale = false;
+
+  [[nodiscard]] double inlier_ratio() const { return num_matches == 0 ? 0.0 : static_cast<double>(num_inliers) / num_matches; }
+};
+
+}  // namespace camloc
