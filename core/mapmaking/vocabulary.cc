@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Seeds far from each other (draw_seeds), then rounds of: each descriptor to its nearest word, each word to the bit-wise
+// majority of its descriptors. The inverted file counts the words of each keyframe's landmarks and weighs them by tf-idf.
 #include "core/mapmaking/vocabulary.h"
 
 #include <algorithm>
