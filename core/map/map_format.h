@@ -8,8 +8,8 @@
 //   - At most 60 bytes a landmark all in, because the descriptors alone are 35 (1.1 of 32 bytes each).
 //   - Any damaged byte is noticed at open; a map never turns silently into another one.
 //   - The same map gives the same bytes, so that files can be compared and identified by a hash.
-//   - A section that somebody adds later does not make the file unreadable: who does not know it skips it, or says that it
-//     may not.
+//   - A section that is added later does not make maps unreadable: a reader that does not know it skips it, unless the
+//     section says that it must be understood.
 //
 // Rejected
 //   - FlatBuffers, Protocol Buffers, HDF5, SQLite: a parser or a library for what is a dozen arrays; alignment of 32-byte
@@ -30,8 +30,8 @@
 //          the next. Nothing comes after the last.
 //
 // A reader that does not know a section skips it when kSectionIsOptional is set, after its place and hash were checked, and
-// refuses the map when it is not. The flag is for what makes a pose better or a tool's work easier; without it is what
-// makes poses wrong where it is left out. A published section is never changed: another one with another id takes its
+// refuses the map when it is not. It is set on what makes poses better or a tool's work easier, and left out on
+// what makes poses wrong where it is ignored. A published section is never changed: another one with another id takes its
 // place. The version grows only when a reader would go wrong in the header or the table.
 //
 // Format 1 has the core sections alone and no flag; element_bytes had the 32 bits that flags share now, so its table reads
