@@ -110,7 +110,7 @@ class ReplaySource final : public FrameSource {
 };
 
 Result<Recording> select_recording(const SourceUrl& url, double rate_hz) {
-  Result<Sequence> sequence = read_sequence(url.path, 0.02, rate_hz);
+  Result<Sequence> sequence = read_sequence(url.path, rate_hz);
   if (!sequence) return sequence.status();
   const std::vector<SequenceFrame>& all = sequence->frames;
   Result<std::vector<std::size_t>> chosen = select_frames(url.text_option("frames", ""), url.text_option("exclude", ""), all.size());

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Line by line, then the unit of the whole file is told from the typical length: at rest a sensor measures one g.
 #include "core/io/accelerometer.h"
 
 #include <algorithm>
@@ -59,24 +61,21 @@ Status fix_unit(const std::string& file_name, std::vector<AccelerometerSample>* 
 
 }  // namespace
 
-Result<std::vector<AccelerometerSample>> parse_accelerometer(std::string_view text, const std::string& file_name) {
+Result<std::vector<AccelerometerSample>> read_accelerometer(const std::string& path) {
+  const Result<std::string> text = read_file_text(path);
+  if (!text) return text.status();
   std::vector<AccelerometerSample> samples;
-  for (const TextLine& line : content_lines(text)) {
-    const Result<AccelerometerSample> sample = parse_line(file_name, line);
+  for (const TextLine& line : content_lines(*text)) {
+    const Result<AccelerometerSample> sample = parse_line(path, line);
     if (!sample) return sample.status();
     if (!samples.empty() && sample->stamp_ns < samples.back().stamp_ns) {
-      return line_error(file_name, line.number, "stamp is before the one above it; sort the file by time");
+      return line_error(path, line.number, "stamp is before the one above it; sort the file by time");
     }
     samples.push_back(*sample);
   }
-  if (samples.empty()) return Status(ErrorCode::kInvalid, file_name + ": no reading in it");
-  if (const Status status = fix_unit(file_name, &samples); !status) return status;
+  if (samples.empty()) return Status(ErrorCode::kInvalid, path + ": no reading in it");
+  if (const Status status = fix_unit(path, &samples); !status) return status;
   return samples;
-}
-
-Result<std::vector<AccelerometerSample>> read_accelerometer(const std::string& path) {
-  const Result<std::string> text = read_file_text(path);
-  return text ? parse_accelerometer(*text, path) : Result<std::vector<AccelerometerSample>>(text.status());
 }
 
 std::vector<OrientedReading> with_orientations(const std::vector<AccelerometerSample>& samples,

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Accelerometer files beside a recording: TUM RGB-D's accelerometer.txt, "timestamp ax ay az" in seconds and m/s^2 (or g).
-// The TUM benchmark does not say which way the axes point; see kinect_R_camera_accelerometer() and
-// find_accelerometer_axes() in core/geometry/gravity.h.
+// The TUM benchmark does not say which way the axes point; see kinect_R_camera_accelerometer() in
+// core/geometry/gravity.h.
 #pragma once
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/base/result.h"
@@ -24,7 +23,6 @@ struct AccelerometerSample {
 
 /// Readings of length about 1 are taken as multiples of standard gravity. Stamps ascend. Errors name file and line; kInvalid
 /// also where the typical length is neither that of m/s^2 nor of g.
-[[nodiscard]] Result<std::vector<AccelerometerSample>> parse_accelerometer(std::string_view text, const std::string& file_name);
 [[nodiscard]] Result<std::vector<AccelerometerSample>> read_accelerometer(const std::string& path);
 
 /// The readings at whose time the camera has a pose (pose_at of sequence.h), with its orientation.

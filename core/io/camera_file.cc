@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// See camera_file.h.
+// The first line tells TOML from YAML, a parser for each kind (camera_toml.cc, camera_yaml.cc) makes a camera of it, and here it
+// gets a name and is checked. Writing is here, too: always TOML, numbers so short that they read back as the same bits.
 #include "core/io/camera_file.h"
 
 #include <charconv>

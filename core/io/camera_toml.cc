@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Our own camera file. See camera_file.h, and config/cameras for examples.
+// Our own camera file. TableReader takes one table of it and keeps the first error, so that the sections below read as a list
+// of their keys. See camera_file.h, and config/cameras for examples.
 #include <toml++/toml.h>
 
 #include <algorithm>

@@ -11,17 +11,11 @@
 #include <cerrno>
 #include <system_error>
 
+#include "core/base/unique_fd.h"
+
 namespace camloc {
 
 namespace {
-
-/// Closes on every way out.
-struct Descriptor {
-  int fd;
-  ~Descriptor() {
-    if (fd >= 0) ::close(fd);
-  }
-};
 
 Status system_error(const std::string& path, int error) {
   const ErrorCode code = error == ENOENT || error == ENOTDIR ? ErrorCode::kNotFound : ErrorCode::kIo;
@@ -31,10 +25,10 @@ Status system_error(const std::string& path, int error) {
 template <typename Bytes>
 Status read_into(const std::string& path, std::size_t max_bytes, Bytes* bytes) {
   // O_NONBLOCK: opening a named pipe must not hang.
-  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
-  if (file.fd < 0) return system_error(path, errno);
+  const UniqueFd file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (!file.is_open()) return system_error(path, errno);
   struct stat info {};
-  if (::fstat(file.fd, &info) != 0) return system_error(path, errno);
+  if (::fstat(file.get(), &info) != 0) return system_error(path, errno);
   if (S_ISDIR(info.st_mode)) return {ErrorCode::kInvalid, path + ": is a folder, expected a file"};
   if (!S_ISREG(info.st_mode)) return {ErrorCode::kInvalid, path + ": is not a regular file"};
   if (static_cast<std::uintmax_t>(info.st_size) > max_bytes) {
@@ -43,7 +37,7 @@ Status read_into(const std::string& path, std::size_t max_bytes, Bytes* bytes) {
   bytes->resize(static_cast<std::size_t>(info.st_size));
   std::size_t done = 0;
   while (done < bytes->size()) {
-    const ssize_t count = ::read(file.fd, bytes->data() + done, bytes->size() - done);
+    const ssize_t count = ::read(file.get(), bytes->data() + done, bytes->size() - done);
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return system_error(path, errno);
     if (count == 0) break;  // became shorter meanwhile

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// See image_file.h.
+// The first bytes tell JPEG from PNG; the decoders are in jpeg_decoder.cc and png_decoder.cc. They ask
+// check_image_size() before anything is allocated.
 #include "core/io/image_file.h"
 
 #include <algorithm>

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Where does the path lead (links, folders, devices); a temporary file beside it; write, fsync, rename, fsync the folder.
 #include "core/io/replace_file.h"
 
 #include <fcntl.h>

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// See sequence.h. Poses are in trajectory.cc.
+// The image lists of a TUM folder are read line by line and colour and depth paired by time; of a 7-Scenes folder the names
+// of the files are the index. Poses are in trajectory.cc.
 #include "core/io/sequence.h"
 
 #include <algorithm>
@@ -20,6 +21,8 @@ namespace camloc {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::int64_t kMaxGapNs = 20'000'000;  // between a colour image and its depth; TUM's own tools take the same
 
 struct StampedFile {
   std::int64_t stamp_ns = 0;
@@ -58,14 +61,13 @@ Result<std::vector<StampedFile>> read_image_list(const fs::path& folder, const c
 }
 
 /// Each depth image goes to at most one colour image: closest pairs first.
-void associate(const std::vector<StampedFile>& depths, double max_gap_s, std::vector<SequenceFrame>* frames) {
-  const std::int64_t max_gap_ns = std::llround(max_gap_s * 1e9);
+void associate(const std::vector<StampedFile>& depths, std::vector<SequenceFrame>* frames) {
   std::vector<std::tuple<std::int64_t, std::size_t, std::size_t>> candidates;  // gap, colour, depth
   std::size_t first = 0;
   for (std::size_t color = 0; color < frames->size(); ++color) {
     const std::int64_t stamp_ns = (*frames)[color].stamp_ns;
-    while (first < depths.size() && depths[first].stamp_ns < stamp_ns - max_gap_ns) ++first;
-    for (std::size_t depth = first; depth < depths.size() && depths[depth].stamp_ns <= stamp_ns + max_gap_ns; ++depth) {
+    while (first < depths.size() && depths[first].stamp_ns < stamp_ns - kMaxGapNs) ++first;
+    for (std::size_t depth = first; depth < depths.size() && depths[depth].stamp_ns <= stamp_ns + kMaxGapNs; ++depth) {
       candidates.emplace_back(std::abs(depths[depth].stamp_ns - stamp_ns), color, depth);
     }
   }
@@ -79,7 +81,7 @@ void associate(const std::vector<StampedFile>& depths, double max_gap_s, std::ve
   }
 }
 
-Result<Sequence> read_tum(const std::string& folder, double max_gap_s) {
+Result<Sequence> read_tum(const std::string& folder) {
   Result<std::vector<StampedFile>> colors = read_image_list(folder, "rgb.txt");
   if (!colors) return colors.status();
   if (colors->empty()) return Status(ErrorCode::kInvalid, folder + "/rgb.txt: lists no image");
@@ -88,7 +90,7 @@ Result<Sequence> read_tum(const std::string& folder, double max_gap_s) {
   if (!is_file(fs::path(folder) / "depth.txt")) return sequence;
   Result<std::vector<StampedFile>> depths = read_image_list(folder, "depth.txt");
   if (!depths) return depths.status();
-  associate(*depths, max_gap_s, &sequence.frames);
+  associate(*depths, &sequence.frames);
   return sequence;
 }
 
@@ -130,13 +132,13 @@ Result<Sequence> read_7scenes(const std::string& folder, double frame_rate_hz) {
 
 }  // namespace
 
-Result<Sequence> read_sequence(const std::string& folder, double max_gap_s, double frame_rate_hz) {
+Result<Sequence> read_sequence(const std::string& folder, double frame_rate_hz) {
   std::error_code error;
   const fs::file_status status = fs::status(folder, error);
   if (!fs::exists(status)) return Status(ErrorCode::kNotFound, folder + ": no such folder");
   if (!fs::is_directory(status))
     return Status(ErrorCode::kInvalid, folder + ": not a folder; a sequence is a TUM RGB-D or 7-Scenes folder");
-  return is_file(fs::path(folder) / "rgb.txt") ? read_tum(folder, max_gap_s) : read_7scenes(folder, frame_rate_hz);
+  return is_file(fs::path(folder) / "rgb.txt") ? read_tum(folder) : read_7scenes(folder, frame_rate_hz);
 }
 
 }  // namespace camloc

@@ -34,9 +34,9 @@ struct Sequence {
 };
 
 /// Errors name file and line. Unsorted stamps, missing images and an empty folder are errors; a colour image without a
-/// depth image within `max_gap_s` is not. Depth belongs to the colour image nearest in time, one to one. 7-Scenes has no
+/// depth image within 20 ms is not. Depth belongs to the colour image nearest in time, one to one. 7-Scenes has no
 /// stamps: frame NNNNNN gets NNNNNN / frame_rate_hz seconds.
-[[nodiscard]] Result<Sequence> read_sequence(const std::string& folder, double max_gap_s = 0.02, double frame_rate_hz = 30);
+[[nodiscard]] Result<Sequence> read_sequence(const std::string& folder, double frame_rate_hz = 30);
 
 /// Poses recorded with the sequence (groundtruth.txt or .pose.txt), interpolated at the frame's stamp where the neighbours
 /// are at most 0.1 s apart; nullopt where there is none. Same length as sequence.frames. kNotFound where the recording
@@ -48,8 +48,8 @@ struct Sequence {
 /// One such line with stamp to the nanosecond, without line end.
 [[nodiscard]] std::string format_tum_line(std::int64_t stamp_ns, const Rigid3& T_map_camera);
 
-/// Pose at a time from an ordered trajectory: interpolated between neighbours at most `max_gap_s` apart, or the nearest
+/// Pose at a time from an ordered trajectory: interpolated between neighbours at most 0.1 s apart, or the nearest
 /// within 0.5 ms.
-[[nodiscard]] std::optional<Rigid3> pose_at(const std::vector<StampedPose>& trajectory, std::int64_t stamp_ns, double max_gap_s = 0.1);
+[[nodiscard]] std::optional<Rigid3> pose_at(const std::vector<StampedPose>& trajectory, std::int64_t stamp_ns);
 
 }  // namespace camloc

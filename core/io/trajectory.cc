@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Poses over time: TUM trajectory files, 7-Scenes pose files, interpolation. See sequence.h.
+// Poses over time. A TUM file is read line by line, a 7-Scenes recording has one 4x4 matrix a frame; both become rigid
+// transforms by taking the nearest rotation. pose_at() interpolates between neighbours. See sequence.h.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -20,6 +21,7 @@ namespace {
 constexpr double kMaxNormError = 0.05;      // of a quaternion; files carry four digits
 constexpr double kMaxRotationError = 0.05;  // of R^T R - I; recorded files are off by 4e-4
 constexpr std::int64_t kNearestNs = 500'000;
+constexpr double kMaxGapNs = 1e8;  // between the poses that are interpolated
 
 Result<StampedPose> parse_tum_line(const std::string& path, const TextLine& line) {
   const std::vector<std::string_view> fields = split_fields(line.text);
@@ -123,7 +125,7 @@ std::string format_tum_line(std::int64_t stamp_ns, const Rigid3& T_map_camera) {
   return line;
 }
 
-std::optional<Rigid3> pose_at(const std::vector<StampedPose>& trajectory, std::int64_t stamp_ns, double max_gap_s) {
+std::optional<Rigid3> pose_at(const std::vector<StampedPose>& trajectory, std::int64_t stamp_ns) {
   const auto after = std::lower_bound(trajectory.begin(), trajectory.end(), stamp_ns,
                                       [](const StampedPose& pose, std::int64_t stamp) { return pose.stamp_ns < stamp; });
   if (after != trajectory.end() && after->stamp_ns == stamp_ns) return after->T_world_camera;
@@ -132,7 +134,7 @@ std::optional<Rigid3> pose_at(const std::vector<StampedPose>& trajectory, std::i
   if (has_before && has_after) {
     const StampedPose& before = *(after - 1);
     const auto gap_ns = static_cast<double>(after->stamp_ns - before.stamp_ns);
-    if (gap_ns <= max_gap_s * 1e9) {
+    if (gap_ns <= kMaxGapNs) {
       return interpolate(before.T_world_camera, after->T_world_camera, static_cast<double>(stamp_ns - before.stamp_ns) / gap_ns);
     }
   }

@@ -5,7 +5,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +16,7 @@
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
 #include "core/geometry/wcs.h"
+#include "core/map/map_format.h"
 
 namespace camloc {
 
@@ -38,6 +41,14 @@ struct InvertedEntry {
   std::uint8_t weight = 0;  ///< normalized tf-idf of the word in the keyframe, 1..255
 };
 
+/// A section beyond the core ones, as bytes. What it says of landmarks it says by their order in the file, which writing an
+/// unpacked map keeps; keyframes and words keep their order always.
+struct ExtraSection {
+  bool is_optional = true;          ///< a reader that does not know it may skip it
+  std::uint16_t element_bytes = 1;  ///< at least 1
+  std::vector<std::byte> bytes;     ///< whole elements
+};
+
 struct MapData {
   std::string name;   ///< free text, at most 63 bytes
   RgbdCamera camera;  ///< that the map was made with
@@ -50,6 +61,8 @@ struct MapData {
   std::vector<Descriptor> words;                          ///< vocabulary
   std::vector<std::vector<InvertedEntry>> inverted_file;  ///< per word, keyframes ascending
   std::optional<WcsDatum> wcs;
+  /// Written as they are, and unpacked as they are, also by who does not know them. Merging and building start without.
+  std::map<map_format::SectionId, ExtraSection> extra_sections;
 };
 
 }  // namespace camloc

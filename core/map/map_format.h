@@ -8,29 +8,41 @@
 //   - At most 60 bytes a landmark all in, because the descriptors alone are 35 (1.1 of 32 bytes each).
 //   - Any damaged byte is noticed at open; a map never turns silently into another one.
 //   - The same map gives the same bytes, so that files can be compared and identified by a hash.
+//   - A section that is added later does not make maps unreadable: a reader that does not know it skips it, unless the
+//     section says that it must be understood.
 //
 // Rejected
-//   - FlatBuffers, Protocol Buffers, HDF5, SQLite: a parser or a library for what is eleven arrays; alignment of 32-byte
+//   - FlatBuffers, Protocol Buffers, HDF5, SQLite: a parser or a library for what is a dozen arrays; alignment of 32-byte
 //     descriptors is not theirs to promise.
 //   - Compression: descriptors are noise to a compressor (under 3 %), and a compressed map cannot be mapped.
 //   - float positions: 16 bits of a 4 m cube are 0.06 mm, the sensor has millimetres.
 //   - An index of first descriptors: a running sum of num_descriptors at open costs 10 us and saves 4 bytes a landmark.
 //   - 32-bit keyframe lists: steps between sorted indices are mostly below 128, one byte instead of four.
+//   - Names of 8 bytes for sections: 32 bits hold four characters, and the table of format 1 stays what it was.
 //
 // Layout. Little-endian, IEEE 754, packed by hand: no record below has padding of its own.
 //
 //   0      FileHeader, 64 bytes. Its layout and its hash are the same in every version, so that a damaged header and a
 //          newer version can be told apart.
-//   64     kNumSections SectionRecord of 32 bytes, in the order of SectionId, then zeros up to a multiple of 64.
+//   64     num_sections SectionRecord of 32 bytes, ids ascending, then zeros up to a multiple of 64. The kNumCoreSections
+//          below come first and are in every map, maybe without elements; others follow where the map has them.
 //   ...    The sections in the same order, without gaps. Each starts at a multiple of 64 and is followed by zeros up to
 //          the next. Nothing comes after the last.
+//
+// A reader that does not know a section skips it when kSectionIsOptional is set, after its place and hash were checked, and
+// refuses the map when it is not. It is set on what makes poses better or a tool's work easier, and left out on
+// what makes poses wrong where it is ignored. A published section is never changed: another one with another id takes its
+// place. The version grows only when a reader would go wrong in the header or the table.
+//
+// Format 1 has the core sections alone and no flag; element_bytes had the 32 bits that flags share now, so its table reads
+// as one of format 2. It is read and no longer written.
 //
 // Hashes are XXH3 64-bit with seed 0. header_hash covers the header before it; map_id covers the section table with its
 // zeros; the hash of a section covers its elements and the zeros after them. So every byte of the file is covered.
 //
 // Sections (element, count)
 //   meta                MetaRecord, 1
-//   cubes             CubeRecord, num_cubes; each at least one landmark
+//   cubes               CubeRecord, num_cubes; each at least one landmark
 //   landmarks           LandmarkRecord, num_landmarks; ordered by cube, within one along a Morton curve
 //   descriptors         32 bytes, num_descriptors; those of landmark 0 first, at least one each; bit order of cv::ORB
 //   keyframes           KeyframeRecord, num_keyframes <= 65535
@@ -49,7 +61,8 @@
 
 namespace camloc::map_format {
 
-inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint32_t kVersion = 2;
+inline constexpr std::uint32_t kOldestVersion = 1;  ///< that is still read
 /// "CMAP", then bytes that a transfer in text mode would change, as in PNG.
 inline constexpr std::array<char, 8> kMagic = {'C', 'M', 'A', 'P', '\r', '\n', '\x1a', '\n'};
 inline constexpr std::uint32_t kByteOrder = 0x01020304;  ///< as a machine of the writer's byte order reads it
@@ -69,6 +82,7 @@ struct FileHeader {
 };
 static_assert(sizeof(FileHeader) == 64);
 
+/// The core sections have the numbers of their order, further ones four characters: see section_id().
 enum class SectionId : std::uint32_t {
   kMeta,
   kCubes,
@@ -82,19 +96,32 @@ enum class SectionId : std::uint32_t {
   kInvertedWeights,
   kWcs,
 };
-inline constexpr std::uint32_t kNumSections = 11;
-inline constexpr std::array<const char*, kNumSections> kSectionNames = {
-    "meta",  "cubes",      "landmarks",          "descriptors",      "keyframes", "keyframe_lists",
-    "words", "word_begin", "inverted_keyframes", "inverted_weights", "wcs"};
+inline constexpr std::uint32_t kNumCoreSections = 11;
+inline constexpr std::uint32_t kMaxSections = 64;
+
+/// The id of a further section, of four printable characters, so that two branches that add one do not take the same.
+[[nodiscard]] constexpr SectionId section_id(const char (&characters)[5]) {
+  std::uint32_t id = 0;
+  for (int i = 0; i < 4; ++i) id |= static_cast<std::uint32_t>(static_cast<unsigned char>(characters[i])) << (8 * i);
+  return SectionId{id};
+}
+
+inline constexpr std::uint16_t kSectionIsOptional = 1;  ///< flag: a reader that does not know the section skips it
 
 struct SectionRecord {
   SectionId id;
-  std::uint32_t element_bytes;
-  std::uint64_t offset;  ///< from the start of the file, multiple of 64
+  std::uint16_t element_bytes;  ///< at least 1
+  std::uint16_t flags;          ///< a reader refuses those that it does not know
+  std::uint64_t offset;         ///< from the start of the file, multiple of 64
   std::uint64_t num_elements;
   std::uint64_t hash;
 };
 static_assert(sizeof(SectionRecord) == 32);
+
+/// Where the first section begins.
+[[nodiscard]] constexpr std::uint64_t first_section_offset(std::uint32_t num_sections) {
+  return (sizeof(FileHeader) + num_sections * sizeof(SectionRecord) + kAlignment - 1) / kAlignment * kAlignment;
+}
 
 /// p_a = rotation * p_b + translation.
 struct TransformRecord {

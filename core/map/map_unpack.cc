@@ -97,6 +97,15 @@ MapKeyframe unpack_keyframe(const MapView& map, std::uint32_t index) {
   return keyframe;
 }
 
+std::map<map_format::SectionId, ExtraSection> unpack_extra_sections(const MapView& map) {
+  std::map<map_format::SectionId, ExtraSection> extra;
+  for (const MapSection& section : map.sections().subspan(map_format::kNumCoreSections)) {
+    const bool is_optional = (section.record.flags & map_format::kSectionIsOptional) != 0;
+    extra[section.record.id] = {is_optional, section.record.element_bytes, {section.bytes.begin(), section.bytes.end()}};
+  }
+  return extra;
+}
+
 std::vector<InvertedEntry> unpack_entries(const MapView& map, std::uint32_t word) {
   const auto keyframes = map.word_keyframes(word);
   const auto weights = map.word_weights(word);
@@ -121,6 +130,7 @@ MapData unpack_map(const MapView& map) {
   data.words.assign(map.words().begin(), map.words().end());
   for (std::uint32_t w = 0; w < info.num_words; ++w) data.inverted_file.push_back(unpack_entries(map, w));
   data.wcs = info.wcs;
+  data.extra_sections = unpack_extra_sections(map);
   return data;
 }
 

@@ -20,7 +20,6 @@
 
 #include "core/base/unique_fd.h"
 #include "core/map/landmark_codes.h"
-#include "core/map/map_sections.h"
 #include "core/map/mapping_guard.h"
 
 namespace camloc {
@@ -54,19 +53,6 @@ class Mapping {
   MappingGuard guard_;
 };
 
-/// What tells one state of a file from another without reading it.
-struct FileIdentity {
-  dev_t device = 0;
-  ino_t inode = 0;
-  off_t bytes = 0;
-  std::int64_t modified_s = 0, modified_ns = 0;
-
-  static FileIdentity of(const struct stat& status) {
-    return {status.st_dev, status.st_ino, status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
-  }
-  friend bool operator==(const FileIdentity&, const FileIdentity&) = default;
-};
-
 Status open_error(ErrorCode code, const std::string& path, const std::string& reason, const char* advice) {
   return {code, "map " + path + ": " + reason + "; " + advice};
 }
@@ -79,7 +65,7 @@ Status system_error(const std::string& path, int error) {
 
 Status content_error(const std::string& path, const Status& status) {
   if (status.code() == ErrorCode::kUnsupported) {
-    return open_error(status.code(), path, status.message(), "rebuild it with 'camloc map build' of this version");
+    return open_error(status.code(), path, status.message(), "update camloc, or rebuild the map with 'camloc map build' of this version");
   }
   return open_error(ErrorCode::kCorrupt, path, status.message(), "copy it again or rebuild it with 'camloc map build'");
 }
@@ -162,12 +148,11 @@ void copy_table(std::span<const T>* table, std::vector<T>* copy) {
 }  // namespace
 
 struct MapView::Impl {
-  Impl(int fd, std::size_t bytes, const FileIdentity& file_identity) : mapping(fd, bytes), identity(file_identity) {}
+  Impl(int fd, std::size_t bytes) : mapping(fd, bytes) {}
 
   Status load(const std::string& path);
 
   Mapping mapping;
-  FileIdentity identity;
   MapInfo info;
   MapSections map;
   std::vector<map_format::CubeRecord> cubes;
@@ -180,7 +165,7 @@ struct MapView::Impl {
 Status MapView::Impl::load(const std::string& path) {
   Result<MapSections> sections = read_map_sections(mapping.bytes());
   if (!sections) return sections.status();
-  map = *sections;
+  map = std::move(*sections);
   copy_table(&map.cubes, &cubes);
   copy_table(&map.keyframes, &keyframes);
   copy_table(&map.word_begin, &word_begin);
@@ -217,7 +202,7 @@ Result<MapView> MapView::open(const std::string& path) {
   if (!S_ISREG(status.st_mode)) return open_error(ErrorCode::kIo, path, "it is no regular file", "name a .cmap file");
   if (status.st_size == 0) return content_error(path, {ErrorCode::kCorrupt, "the file is empty"});
 
-  auto impl = std::make_unique<Impl>(fd.get(), static_cast<std::size_t>(status.st_size), FileIdentity::of(status));
+  auto impl = std::make_unique<Impl>(fd.get(), static_cast<std::size_t>(status.st_size));
   if (!impl->mapping.is_mapped()) return system_error(path, errno);
   if (Status loaded = impl->load(path); !loaded.is_ok()) return content_error(path, loaded);
   return MapView(std::move(impl));
@@ -225,12 +210,8 @@ Result<MapView> MapView::open(const std::string& path) {
 
 const MapInfo& MapView::info() const { return impl_->info; }
 bool MapView::is_damaged() const { return impl_->mapping.is_damaged(); }
-
-bool MapView::is_stale() const {
-  struct stat status {};
-  return ::stat(impl_->info.path.c_str(), &status) != 0 || !(FileIdentity::of(status) == impl_->identity);
-}
-
+std::span<const MapSection> MapView::sections() const { return impl_->map.sections; }
+std::span<const std::byte> MapView::section(map_format::SectionId id) const { return impl_->map.section(id); }
 std::span<const map_format::CubeRecord> MapView::cubes() const { return impl_->map.cubes; }
 std::span<const map_format::LandmarkRecord> MapView::landmarks() const { return impl_->map.landmarks; }
 std::span<const map_format::KeyframeRecord> MapView::keyframes() const { return impl_->map.keyframes; }

@@ -19,6 +19,7 @@
 #include "core/features/descriptor.h"
 #include "core/map/map_data.h"
 #include "core/map/map_format.h"
+#include "core/map/map_sections.h"
 
 namespace camloc {
 
@@ -50,8 +51,12 @@ class MapView {
   [[nodiscard]] const MapInfo& info() const;
   /// True once a page of the file could not be read any more (truncated while mapped); see mapping_guard.h.
   [[nodiscard]] bool is_damaged() const;
-  /// True when the path no longer names the bytes that were opened: replaced, removed, or written to. One stat().
-  [[nodiscard]] bool is_stale() const;
+
+  /// All sections, in the order of the file; those without a kind are not known here and were skipped.
+  [[nodiscard]] std::span<const MapSection> sections() const;
+  /// The bytes of one section, for the file that knows what they mean; empty where the map does not have it. These stay in
+  /// the file: whoever indexes with a number from here compares it with the bound first.
+  [[nodiscard]] std::span<const std::byte> section(map_format::SectionId id) const;
 
   [[nodiscard]] std::span<const map_format::CubeRecord> cubes() const;
   [[nodiscard]] std::span<const map_format::LandmarkRecord> landmarks() const;
@@ -62,6 +67,13 @@ class MapView {
   /// Cube that holds a landmark.
   [[nodiscard]] std::uint32_t cube_of(std::uint32_t landmark) const;
   [[nodiscard]] Eigen::Vector3f position_m(std::uint32_t landmark) const;
+  /// Calls visit(LandmarkRecord, Eigen::Vector3f position_m) for each landmark, in the order of the file.
+  template <typename Visit>
+  void for_each_position(Visit&& visit) const {
+    for (const map_format::CubeRecord& cube : cubes()) {
+      for (const auto& landmark : landmarks().subspan(cube.first_landmark, cube.num_landmarks)) visit(landmark, position_m(cube, landmark));
+    }
+  }
   /// Position with the cube already known: the fast way to walk through one.
   [[nodiscard]] static Eigen::Vector3f position_m(const map_format::CubeRecord& cube, const map_format::LandmarkRecord& landmark) {
     const float scale = cube.extent_m * (1.0F / 65535.0F);

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Check the data, order the landmarks, encode each section, seal everything with hashes.
+// Checks the data, orders the landmarks, encodes the core sections one after the other, copies the further ones, and seals
+// everything with hashes. A file on disk is replaced at the end, in one step.
 #include "core/map/map_writer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <numeric>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -84,12 +85,23 @@ Status check_globals(const MapData& map) {
   return Status::ok();
 }
 
+Status check_extra_sections(const MapData& map) {
+  if (map.extra_sections.size() > map_format::kMaxSections - map_format::kNumCoreSections) return invalid("too many sections");
+  for (const auto& [id, section] : map.extra_sections) {
+    if (static_cast<std::uint32_t>(id) < map_format::kNumCoreSections) return invalid("an extra section with the id of a core one");
+    if (section.element_bytes == 0 || section.bytes.size() % section.element_bytes != 0)
+      return invalid("an extra section of broken elements");
+  }
+  return Status::ok();
+}
+
 Status check_map(const MapData& map, const MapWriteOptions& options) {
   if (map.landmarks.empty()) return invalid("it has no landmark");
   if (map.landmarks.size() >= std::numeric_limits<std::int32_t>::max()) return invalid("it has too many landmarks");
   if (map.keyframes.size() > map_format::kMaxKeyframes) return invalid("it has more than 65535 keyframes");
   if (!(options.cube_m >= 0.01 && options.cube_m <= 1e4)) return invalid("cubes must be 0.01 to 10000 m wide");
   if (Status status = check_globals(map); !status.is_ok()) return status;
+  if (Status status = check_extra_sections(map); !status.is_ok()) return status;
   for (const auto& landmark : map.landmarks) {
     if (Status status = check_landmark(landmark); !status.is_ok()) return status;
   }
@@ -221,18 +233,16 @@ std::vector<map_format::CubeRecord> make_cubes(const std::vector<Placement>& ord
 /// Grows the file section by section.
 class FileBuilder {
  public:
-  FileBuilder() : bytes_(kFirstSection) {}
+  explicit FileBuilder(std::size_t num_sections) : bytes_(map_format::first_section_offset(static_cast<std::uint32_t>(num_sections))) {}
 
   template <typename T>
   void add(SectionId id, const std::vector<T>& elements) {
-    const std::size_t offset = bytes_.size();
-    const std::size_t content_bytes = elements.size() * sizeof(T);
-    bytes_.resize((offset + content_bytes + map_format::kAlignment - 1) & ~(map_format::kAlignment - 1));
-    if (content_bytes > 0) std::memcpy(bytes_.data() + offset, elements.data(), content_bytes);
-    const std::uint64_t hash = map_hash(std::span<const std::byte>(bytes_).subspan(offset));
-    const map_format::SectionRecord record = {id, sizeof(T), offset, elements.size(), hash};
-    std::memcpy(bytes_.data() + sizeof(map_format::FileHeader) + num_sections_ * sizeof record, &record, sizeof record);
-    ++num_sections_;
+    add_bytes({id, sizeof(T), 0, bytes_.size(), elements.size(), 0}, std::as_bytes(std::span(elements)));
+  }
+
+  void add(SectionId id, const ExtraSection& section) {
+    const std::uint16_t flags = section.is_optional ? map_format::kSectionIsOptional : 0;
+    add_bytes({id, section.element_bytes, flags, bytes_.size(), section.bytes.size() / section.element_bytes, 0}, section.bytes);
   }
 
   std::vector<std::byte> finish() && {
@@ -243,7 +253,7 @@ class FileBuilder {
     header.file_bytes = bytes_.size();
     header.num_sections = num_sections_;
     const std::span<const std::byte> bytes = bytes_;
-    header.map_id = map_hash(bytes.subspan(sizeof header, kFirstSection - sizeof header));
+    header.map_id = map_hash(bytes.subspan(sizeof header, map_format::first_section_offset(num_sections_) - sizeof header));
     std::memcpy(bytes_.data(), &header, sizeof header);
     header.header_hash = map_hash(bytes.first(offsetof(map_format::FileHeader, header_hash)));
     std::memcpy(bytes_.data(), &header, sizeof header);
@@ -251,8 +261,13 @@ class FileBuilder {
   }
 
  private:
-  static constexpr std::size_t kTableEnd = sizeof(map_format::FileHeader) + map_format::kNumSections * sizeof(map_format::SectionRecord);
-  static constexpr std::size_t kFirstSection = (kTableEnd + map_format::kAlignment - 1) & ~(map_format::kAlignment - 1);
+  void add_bytes(map_format::SectionRecord record, std::span<const std::byte> content) {
+    bytes_.resize((record.offset + content.size() + map_format::kAlignment - 1) & ~(map_format::kAlignment - 1));
+    if (!content.empty()) std::memcpy(bytes_.data() + record.offset, content.data(), content.size());
+    record.hash = map_hash(std::span<const std::byte>(bytes_).subspan(record.offset));
+    std::memcpy(bytes_.data() + sizeof(map_format::FileHeader) + num_sections_ * sizeof record, &record, sizeof record);
+    ++num_sections_;
+  }
 
   std::vector<std::byte> bytes_;
   std::uint32_t num_sections_ = 0;
@@ -329,13 +344,14 @@ void add_wcs(const MapData& map, FileBuilder* file) {
 Result<std::vector<std::byte>> serialize_map(const MapData& map, const MapWriteOptions& options) {
   if (Status status = check_map(map, options); !status.is_ok()) return status;
   const std::vector<Placement> order = order_landmarks(map, options.cube_m);
-  FileBuilder file;
+  FileBuilder file(map_format::kNumCoreSections + map.extra_sections.size());
   file.add(SectionId::kMeta, std::vector{make_meta(map)});
   file.add(SectionId::kCubes, make_cubes(order, options.cube_m));
   add_landmarks(map, order, &file);
   add_keyframes(map, order, &file);
   add_words(map, &file);
   add_wcs(map, &file);
+  for (const auto& [id, section] : map.extra_sections) file.add(id, section);
   return std::move(file).finish();
 }
 

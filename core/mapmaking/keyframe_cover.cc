@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// First views are taken, each time the one that adds most (take_views); then those whose items the later ones all see are
+// given back, in the order in which they were taken.
 #include "core/mapmaking/keyframe_cover.h"
 
 #include <algorithm>

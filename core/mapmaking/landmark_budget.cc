@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Greedy with lazy evaluation (Minoux, "Accelerated greedy algorithms for maximizing submodular set functions", 1978): gains
+// only shrink, so the best of the queue is recomputed and goes back when another one is better now.
 #include "core/mapmaking/landmark_budget.h"
 
 #include <algorithm>
@@ -8,6 +11,10 @@
 
 namespace camloc {
 namespace {
+
+constexpr double kMinObservations = 2;          // landmarks with fewer are taken only for views that need them
+constexpr std::uint32_t kWantedPerView = 1000;  // a landmark all of whose views have this many is not needed
+constexpr std::uint32_t kMinPerView = 60;       // a view with fewer needs every landmark it can get
 
 struct CandidateLandmark {
   double gain;
@@ -35,7 +42,7 @@ class Selector {
   }
 
   /// Greedy over the landmarks with at least `min_observations` that some view with fewer than `wanted` still needs.
-  void take(std::uint32_t min_observations, std::uint32_t wanted, std::uint32_t max_landmarks) {
+  void take(double min_observations, std::uint32_t wanted, std::uint32_t max_landmarks) {
     std::priority_queue<CandidateLandmark> queue;
     for (std::uint32_t i = 0; i < is_kept_.size(); ++i) {
       if (is_kept_[i] == 0 && num_observations(i) >= min_observations) queue.push({gain(i), i});
@@ -98,10 +105,10 @@ class Selector {
 }  // namespace
 
 std::vector<std::uint32_t> select_landmarks(std::span<const std::vector<ViewObservation>> views, std::size_t num_landmarks,
-                                            const LandmarkBudgetOptions& options, std::span<const float> worth) {
+                                            std::uint32_t max_landmarks, std::span<const float> worth) {
   Selector selector(views, num_landmarks, worth);
-  selector.take(std::max(options.min_observations, 1U), options.wanted_per_view, options.max_landmarks);
-  selector.take(1, options.min_per_view, options.max_landmarks);
+  selector.take(kMinObservations, kWantedPerView, max_landmarks);
+  selector.take(1, kMinPerView, max_landmarks);
   return selector.kept();
 }
 

@@ -15,16 +15,10 @@
 
 namespace camloc {
 
-struct LandmarkBudgetOptions {
-  std::uint32_t max_landmarks = 0;      ///< 0 = no limit
-  std::uint32_t min_observations = 2;   ///< landmarks with fewer are taken only for views that need them
-  std::uint32_t wanted_per_view = 400;  ///< a landmark all of whose views have this many is not needed
-  std::uint32_t min_per_view = 60;      ///< a view with fewer needs every landmark it can get
-};
-
-/// Indices of the landmarks to keep, ascending. `worth` may say for each landmark how many observations those in `views` stand
+/// Indices of the landmarks to keep, ascending; at most `max_landmarks`, 0 = no limit. Landmarks that one view alone sees are
+/// taken only for views that have few others. `worth` may say for each landmark how many observations those in `views` stand
 /// for, where the views are a choice themselves; empty: each for itself.
 [[nodiscard]] std::vector<std::uint32_t> select_landmarks(std::span<const std::vector<ViewObservation>> views, std::size_t num_landmarks,
-                                                          const LandmarkBudgetOptions& options, std::span<const float> worth = {});
+                                                          std::uint32_t max_landmarks, std::span<const float> worth = {});
 
 }  // namespace camloc

@@ -1,5 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// A view meets the landmarks so far: those near its own 3D points are projected into it and paired with the features around
+// (gather_candidates, find_pairs), the closest descriptors first get each other, and what is left with depth starts landmarks
+// of its own. Each observation moves its landmark's position and may add an appearance. What is said about a landmark once
+// all views are in is in landmark_summary.cc.
 #include "core/mapmaking/landmark_fusion.h"
 
 #include <Eigen/LU>
@@ -19,6 +24,12 @@ constexpr double kVoxelM = 0.30;
 // Recorded poses shake by a few millimetres from frame to frame; no observation is better than that.
 constexpr double kPoseNoiseM = 0.004;
 constexpr std::int64_t kNone = -1, kAbsorbed = -2;
+// What makes a feature another observation of a landmark.
+constexpr float kRadiusPx = 2.5F;      // of level 0, from where the landmark is projected; grows with the feature's level
+constexpr int kMaxDistance = 64;       // of the descriptor to any appearance of the landmark
+constexpr double kMaxDepthSigmas = 3;  // along the optical axis, within these two bounds
+constexpr double kMinDepthToleranceM = 0.02, kMaxDepthToleranceM = 0.30;
+constexpr float kMaxReferenceRatio = 2;  // of the reference distance to the range the landmark has been seen with
 
 std::uint64_t voxel_key(std::int64_t x, std::int64_t y, std::int64_t z) {
   constexpr std::int64_t kOffset = 1 << 20;
@@ -38,19 +49,20 @@ int distance_to_any(const std::vector<Descriptor>& appearances, const Descriptor
   return best;
 }
 
-// Mixing function of SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
 }  // namespace
 
-LandmarkFusion::LandmarkFusion(const Intrinsics& color, const DepthNoise& depth_noise, const FusionOptions& options)
-    : color_(color), depth_noise_(depth_noise), options_(options), grid_(color.width, color.height, options.max_features) {
+LandmarkFusion::LandmarkFusion(const Intrinsics& color, const DepthNoise& depth_noise, const OrbOptions& orb)
+    : color_(color),
+      depth_noise_(depth_noise),
+      max_features_(static_cast<std::size_t>(orb.num_features)),
+      grid_(color.width, color.height, orb.num_features) {
   for (int level = 0; level < 256; ++level) {
-    scale_.push_back(std::pow(options_.scale_factor, static_cast<float>(std::min(level, options_.num_levels - 1))));
+    scale_.push_back(std::pow(orb.scale_factor, static_cast<float>(std::min(level, orb.num_levels - 1))));
   }
 }
 
-FusionCounts LandmarkFusion::add_view(const ViewFeatures& view) {
-  const std::size_t size = std::min(view.features.size(), static_cast<std::size_t>(options_.max_features));
-  FusionCounts counts;
+void LandmarkFusion::add_view(const ViewFeatures& view) {
+  const std::size_t size = std::min(view.features.size(), max_features_);
   views_.emplace_back();
   poses_.push_back(view.T_map_camera);
   landmark_of_feature_.assign(size, kNone);
@@ -79,21 +91,15 @@ FusionCounts LandmarkFusion::add_view(const ViewFeatures& view) {
     std::int64_t& owner = landmark_of_feature_[i];
     if (owner >= 0) {
       observe(view, i, static_cast<std::uint32_t>(owner));
-      ++counts.fused;
-    } else if (owner == kAbsorbed) {
-      ++counts.absorbed;
-    } else if (view.depth_m[i] <= 0) {
+    } else if (owner == kAbsorbed || view.depth_m[i] <= 0) {
       continue;
     } else if (const std::int64_t repeated = find_new_landmark(view, i); repeated >= 0) {
       widen_scale(view, i, &landmarks_[static_cast<std::size_t>(repeated)]);
-      ++counts.absorbed;
     } else {
       owner = create(view, i);
       is_new_[i] = 1;
-      ++counts.created;
     }
   }
-  return counts;
 }
 
 // Landmarks in the voxels around the view's own 3D points: what lies elsewhere is out of sight or at another depth.
@@ -136,8 +142,7 @@ void LandmarkFusion::find_pairs(const ViewFeatures& view) {
 void LandmarkFusion::pair_landmark(const ViewFeatures& view, std::uint32_t index, const Eigen::Vector3d& p_camera) {
   const Fused& landmark = landmarks_[index];
   const Eigen::Vector2f pixel = color_.project(p_camera).cast<float>();
-  const auto radius = static_cast<float>(options_.radius_px);
-  const float reach = radius * scale_[255];
+  const float reach = kRadiusPx * scale_[255];
   const auto width = static_cast<float>(color_.width), height = static_cast<float>(color_.height);
   // Written so that a NaN fails, too.
   if (!(pixel.x() >= -reach && pixel.y() >= -reach && pixel.x() < width + reach && pixel.y() < height + reach)) return;
@@ -151,10 +156,10 @@ void LandmarkFusion::pair_landmark(const ViewFeatures& view, std::uint32_t index
       for (const std::int32_t feature : grid_.bucket(column, row)) {
         const auto f = static_cast<std::size_t>(feature);
         const Keypoint& keypoint = view.features.keypoints[f];
-        const float du = keypoint.u - pixel.x(), dv = keypoint.v - pixel.y(), limit = radius * scale_[keypoint.level];
+        const float du = keypoint.u - pixel.x(), dv = keypoint.v - pixel.y(), limit = kRadiusPx * scale_[keypoint.level];
         if (du * du + dv * dv > limit * limit || !is_consistent(landmark, p_camera.z(), view, f)) continue;
         const int distance = distance_to_any(landmark.appearances, view.features.descriptors[f]);
-        if (distance <= options_.max_distance) pairs_.push_back({distance, index, feature});
+        if (distance <= kMaxDistance) pairs_.push_back({distance, index, feature});
       }
     }
   }
@@ -164,16 +169,16 @@ bool LandmarkFusion::is_consistent(const Fused& landmark, double z_m, const View
   const double depth = view.depth_m[feature];
   if (depth <= 0) return false;
   const double sigma = depth_noise_.sigma_m(depth) * std::sqrt(1.0 + 1.0 / landmark.num_observations);
-  const double tolerance = std::clamp(options_.max_depth_sigmas * sigma, options_.min_depth_tolerance_m, options_.max_depth_tolerance_m);
+  const double tolerance = std::clamp(kMaxDepthSigmas * sigma, kMinDepthToleranceM, kMaxDepthToleranceM);
   if (std::abs(z_m - depth) > tolerance) return false;
-  const float reference = reference_m(view, feature), ratio = static_cast<float>(options_.max_reference_ratio);
-  return reference * ratio >= landmark.min_reference_m && reference <= landmark.max_reference_m * ratio;
+  const float reference = reference_m(view, feature);
+  return reference * kMaxReferenceRatio >= landmark.min_reference_m && reference <= landmark.max_reference_m * kMaxReferenceRatio;
 }
 
 // The landmark that this view has just started at the same corner on another pyramid level, or kNone.
 std::int64_t LandmarkFusion::find_new_landmark(const ViewFeatures& view, std::size_t feature) const {
   const Keypoint& keypoint = view.features.keypoints[feature];
-  const auto radius = static_cast<float>(options_.radius_px) * scale_[keypoint.level];
+  const float radius = kRadiusPx * scale_[keypoint.level];
   const auto bucket_of = [&](float value, int count) {
     return std::clamp(static_cast<int>(std::floor(value / static_cast<float>(grid_.cell_px()))), 0, count - 1);
   };
@@ -185,8 +190,8 @@ std::int64_t LandmarkFusion::find_new_landmark(const ViewFeatures& view, std::si
         if (is_new_[o] == 0) continue;
         const Keypoint& rival = view.features.keypoints[o];
         if (std::hypot(rival.u - keypoint.u, rival.v - keypoint.v) > radius) continue;
-        if (std::abs(view.depth_m[o] - view.depth_m[feature]) > options_.min_depth_tolerance_m) continue;
-        if (hamming_distance(view.features.descriptors[o], view.features.descriptors[feature]) <= options_.max_distance)
+        if (std::abs(view.depth_m[o] - view.depth_m[feature]) > kMinDepthToleranceM) continue;
+        if (hamming_distance(view.features.descriptors[o], view.features.descriptors[feature]) <= kMaxDistance)
           return landmark_of_feature_[o];
       }
     }
@@ -249,8 +254,7 @@ void LandmarkFusion::observe(const ViewFeatures& view, std::size_t feature, std:
 
 void LandmarkFusion::add_appearance(const Keypoint& keypoint, const Descriptor& descriptor, std::uint32_t index) {
   Fused& landmark = landmarks_[index];
-  if (landmark.appearances.size() < static_cast<std::size_t>(options_.max_descriptors) &&
-      distance_to_any(landmark.appearances, descriptor) > options_.appearance_distance) {
+  if (landmark.appearances.size() < kMaxDescriptors && distance_to_any(landmark.appearances, descriptor) > kAppearanceDistance) {
     landmark.appearances.push_back(descriptor);
   }
   // Reservoir sampling (Vitter, "Random sampling with a reservoir", 1985) with a hash for the dice.

@@ -15,26 +15,13 @@
 
 #include "core/features/descriptor.h"
 #include "core/features/matcher.h"
+#include "core/features/orb_extractor.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
 #include "core/map/map_data.h"
 #include "core/registration/view_features.h"
 
 namespace camloc {
-
-struct FusionOptions {
-  double radius_px = 4.0;         ///< of level 0; grows with the feature's level
-  int max_distance = 64;          ///< descriptor distance to any appearance of the landmark
-  int appearance_distance = 48;   ///< farther than this from all appearances is a new one
-  int max_descriptors = 4;        ///< appearances a landmark may keep
-  double max_depth_sigmas = 3.0;  ///< tolerance along the optical axis
-  double min_depth_tolerance_m = 0.02;
-  double max_depth_tolerance_m = 0.30;
-  double max_reference_ratio = 2.0;  ///< of the reference distance to the range the landmark has been seen with
-  float scale_factor = 1.2F;
-  int num_levels = 8;
-  int max_features = 2000;  ///< features of a view beyond this are ignored
-};
 
 /// A landmark as one view saw it.
 struct ViewObservation {
@@ -43,18 +30,13 @@ struct ViewObservation {
 };
 inline constexpr int kCellColumns = 4, kCellRows = 3, kNumCells = kCellColumns * kCellRows;
 
-struct FusionCounts {
-  std::uint32_t fused = 0;     ///< features that became another observation
-  std::uint32_t created = 0;   ///< features that started a landmark
-  std::uint32_t absorbed = 0;  ///< features that repeat a landmark this view already saw (the same corner on another level)
-};
-
 /// Not thread-safe. The same views in the same order give the same bits.
 class LandmarkFusion {
  public:
-  LandmarkFusion(const Intrinsics& color, const DepthNoise& depth_noise, const FusionOptions& options);
+  /// Views come from an extractor with these ORB settings; features of a view beyond orb.num_features are ignored.
+  LandmarkFusion(const Intrinsics& color, const DepthNoise& depth_noise, const OrbOptions& orb);
 
-  FusionCounts add_view(const ViewFeatures& view);
+  void add_view(const ViewFeatures& view);
 
   [[nodiscard]] std::size_t num_landmarks() const { return landmarks_.size(); }
   [[nodiscard]] std::uint64_t num_observations() const { return num_observations_; }
@@ -67,7 +49,9 @@ class LandmarkFusion {
   [[nodiscard]] std::vector<MapLandmark> landmarks(std::vector<std::vector<std::uint32_t>>* support) const;
 
  private:
-  static constexpr std::size_t kMaxSamples = 12;  ///< observations of a landmark whose descriptors are remembered
+  static constexpr std::size_t kMaxSamples = 12;     ///< observations of a landmark whose descriptors are remembered
+  static constexpr std::size_t kMaxDescriptors = 4;  ///< appearances a landmark may keep
+  static constexpr int kAppearanceDistance = 48;     ///< farther than this from all appearances is a new one
   struct Sample {
     Descriptor descriptor;
     float angle_rad = 0;
@@ -106,7 +90,7 @@ class LandmarkFusion {
 
   Intrinsics color_;
   DepthNoise depth_noise_;
-  FusionOptions options_;
+  std::size_t max_features_;
   std::vector<float> scale_;  ///< per level
   FeatureGrid grid_;
   std::vector<Fused> landmarks_;

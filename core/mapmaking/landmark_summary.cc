@@ -12,7 +12,7 @@
 
 namespace camloc {
 
-// Medoid first; then, while some sample is farther than appearance_distance from all chosen, the sample that stands for the
+// Medoid first; then, while some sample is farther than kAppearanceDistance from all chosen, the sample that stands for the
 // most of those left over.
 void LandmarkFusion::choose_descriptors(const Fused& from, MapLandmark* to, std::vector<std::uint32_t>* support) const {
   const std::size_t count = from.samples.size();
@@ -22,7 +22,7 @@ void LandmarkFusion::choose_descriptors(const Fused& from, MapLandmark* to, std:
       distance[i][j] = distance[j][i] = hamming_distance(from.samples[i].descriptor, from.samples[j].descriptor);
   }
   std::array<bool, kMaxSamples> is_covered{};
-  while (to->descriptors.size() < static_cast<std::size_t>(options_.max_descriptors)) {
+  while (to->descriptors.size() < kMaxDescriptors) {
     std::size_t best = count;
     int best_count = 0, best_sum = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -30,7 +30,7 @@ void LandmarkFusion::choose_descriptors(const Fused& from, MapLandmark* to, std:
       int near = 0, sum = 0;
       for (std::size_t j = 0; j < count; ++j) {
         if (is_covered[j]) continue;
-        near += distance[i][j] <= options_.appearance_distance ? 1 : 0;
+        near += distance[i][j] <= kAppearanceDistance ? 1 : 0;
         sum += distance[i][j];
       }
       const bool is_medoid_round = to->descriptors.empty();
@@ -42,7 +42,7 @@ void LandmarkFusion::choose_descriptors(const Fused& from, MapLandmark* to, std:
     if (to->descriptors.empty()) to->angle_rad = from.samples[best].angle_rad;
     to->descriptors.push_back(from.samples[best].descriptor);
     support->push_back(static_cast<std::uint32_t>(best_count));
-    for (std::size_t j = 0; j < count; ++j) is_covered[j] = is_covered[j] || distance[best][j] <= options_.appearance_distance;
+    for (std::size_t j = 0; j < count; ++j) is_covered[j] = is_covered[j] || distance[best][j] <= kAppearanceDistance;
   }
 }
 

@@ -1,5 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Rounds until the map fits: choose landmarks (landmark_budget), cover them with keyframes (keyframe_cover), give back as many
+// further descriptors as the bytes allow, train the words (vocabulary), pack it and weigh the file. Too large: fewer
+// landmarks; lists too long: fewer keyframes; room left over: more landmarks.
 #include "core/mapmaking/map_assembly.h"
 
 #include <algorithm>
@@ -15,11 +19,12 @@
 namespace camloc {
 namespace {
 
-constexpr std::size_t kMaxKeyframes = 65535;  // InvertedEntry::keyframe
 constexpr int kMaxBudgetRounds = 24;
 constexpr int kMaxFills = 4;
 constexpr double kFullShare = 0.97, kNextShare = 0.98;  // of the budget: full enough, and what the next round aims at
-constexpr std::uint32_t kMaxKeyframeGain = 200;
+// A view that alone sees fewer landmarks is no keyframe, those landmarks go; up to the second where the lists are too long.
+constexpr std::uint32_t kMinKeyframeGain = 20, kMaxKeyframeGain = 200;
+constexpr double kMaxBytesPerLandmark = 60;  // of the whole file: bounds the further descriptors and the keyframes' lists
 // What a landmark costs in the file: its record, one descriptor, its share of words and lists.
 constexpr double kRecordBytes = 16, kDescriptorBytes = 32, kListEntryBytes = 1.2, kInvertedEntryBytes = 3, kKeyframeBytes = 40,
                  kFixedBytes = 2048, kMinWordBytes = 64 * 36, kFurtherBytes = kDescriptorBytes + kInvertedEntryBytes;
@@ -52,11 +57,7 @@ class MapAssembler {
 };
 
 std::vector<std::uint32_t> MapAssembler::useful_landmarks(std::uint32_t max_landmarks) const {
-  LandmarkBudgetOptions budget;
-  budget.max_landmarks = max_landmarks;
-  budget.min_observations = static_cast<std::uint32_t>(std::max(options_.min_observations, 1));
-  budget.wanted_per_view = static_cast<std::uint32_t>(std::max(options_.landmarks_per_view, 1));
-  return select_landmarks(parts_.views, parts_.landmarks.size(), budget, parts_.worth);
+  return select_landmarks(parts_.views, parts_.landmarks.size(), max_landmarks, parts_.worth);
 }
 
 // Landmarks, keyframes and descriptors of a map of the kept landmarks; no words yet.
@@ -115,7 +116,7 @@ void MapAssembler::keep_descriptors(const std::vector<std::uint32_t>& kept, MapD
   std::size_t entries = 0;
   for (const MapKeyframe& keyframe : map->keyframes) entries += keyframe.landmarks.size();
   const auto n = static_cast<double>(kept.size());
-  const double words = options_.num_words > 0 ? options_.num_words : default_num_words(kept.size());
+  const double words = default_num_words(kept.size());
   double bytes = kFixedBytes + n * (kRecordBytes + kDescriptorBytes) + words * (kDescriptorBytes + 8) +
                  static_cast<double>(entries) * (kListEntryBytes + kInvertedEntryBytes) +
                  static_cast<double>(map->keyframes.size()) * kKeyframeBytes;
@@ -123,7 +124,7 @@ void MapAssembler::keep_descriptors(const std::vector<std::uint32_t>& kept, MapD
   if (options_.appearance_share > 0 && options_.max_bytes == 0) set_aside = std::numeric_limits<double>::infinity();
   for (const Further& f : further) {
     bytes += kFurtherBytes;
-    if (f.support < 2 || bytes > options_.max_bytes_per_landmark * n + set_aside) break;
+    if (f.support < 2 || bytes > kMaxBytesPerLandmark * n + set_aside) break;
     map->landmarks[f.landmark].descriptors.push_back(parts_.landmarks[kept[f.landmark]].descriptors[f.descriptor]);
   }
 }
@@ -132,7 +133,7 @@ void MapAssembler::add_words(MapData* map) const {
   std::vector<Descriptor> descriptors;
   for (const MapLandmark& landmark : map->landmarks)
     descriptors.insert(descriptors.end(), landmark.descriptors.begin(), landmark.descriptors.end());
-  map->words = train_vocabulary(descriptors, options_.num_words > 0 ? options_.num_words : default_num_words(map->landmarks.size()));
+  map->words = train_vocabulary(descriptors, default_num_words(map->landmarks.size()));
   build_inverted_file(map);
 }
 
@@ -151,16 +152,17 @@ void MapAssembler::count(const MapData& map, MapBuildReport* report) const {
 Result<MapData> MapAssembler::run() {
   const auto max_bytes = static_cast<double>(options_.max_bytes);
   std::uint32_t max_landmarks = 0;
-  auto min_gain = static_cast<std::uint32_t>(std::max(options_.min_keyframe_gain, 1));
+  std::uint32_t min_gain = kMinKeyframeGain;
   if (options_.max_bytes > 0)
-    max_landmarks = static_cast<std::uint32_t>((1 - options_.appearance_share) * max_bytes / options_.max_bytes_per_landmark) + 1;
+    max_landmarks = static_cast<std::uint32_t>((1 - options_.appearance_share) * max_bytes / kMaxBytesPerLandmark) + 1;
   std::vector<std::uint32_t> kept = useful_landmarks(max_landmarks);
   std::optional<MapData> fitting;
   int num_fills = 0;
   for (int round = 0; round < kMaxBudgetRounds; ++round) {
     MapData map = select(kept, min_gain);
     if (map.landmarks.empty()) return nothing_left();
-    if (map.keyframes.size() > kMaxKeyframes) return {ErrorCode::kUnsupported, "map: more than 65535 keyframes; select fewer frames"};
+    if (map.keyframes.size() > map_format::kMaxKeyframes)
+      return {ErrorCode::kUnsupported, "map: more than 65535 keyframes; select fewer frames"};
     add_words(&map);
     map.pose_sigma_m = parts_.pose_sigma_m;
     map.pose_sigma_rad = parts_.pose_sigma_rad;
@@ -198,7 +200,7 @@ Status MapAssembler::nothing_left() const {
 bool MapAssembler::has_long_lists(const MapData& map, double file_bytes) const {
   const auto num_landmarks = static_cast<double>(map.landmarks.size());
   const double further = options_.appearance_share > 0 ? kFurtherBytes * (static_cast<double>(num_descriptors_of(map)) - num_landmarks) : 0;
-  return file_bytes - further > options_.max_bytes_per_landmark * num_landmarks + kFixedBytes + kMinWordBytes;
+  return file_bytes - further > kMaxBytesPerLandmark * num_landmarks + kFixedBytes + kMinWordBytes;
 }
 
 }  // namespace

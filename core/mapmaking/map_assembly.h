@@ -18,22 +18,13 @@ namespace camloc {
 
 struct MapBuildOptions {
   OrbOptions orb;
-  std::uint64_t max_bytes = 0;   ///< of the file; 0 = no limit
-  int num_words = 0;             ///< 0 = chosen from the number of landmarks
-  double fuse_radius_px = 2.5;   ///< a feature this close to a projected landmark may be another view of it
-  int fuse_max_distance = 64;    ///< and its descriptor must be this close
-  int appearance_distance = 48;  ///< an observation farther than this from all of a landmark's descriptors adds one
-  int max_descriptors_per_landmark = 4;
-  int min_observations = 2;            ///< landmarks seen by fewer frames are dropped where others are enough
-  int landmarks_per_view = 1000;       ///< a landmark is not needed where all views that see it have this many
-  double max_bytes_per_landmark = 60;  ///< of the whole file: bounds the further descriptors and the keyframes' lists
-  double appearance_share = 0;         ///< of the file, set aside for further descriptors; without max_bytes any > 0 keeps them all
-  bool fills_budget = false;           ///< choose again, more landmarks, where the first choice leaves much of max_bytes
-  int min_keyframe_gain = 20;          ///< a view that alone sees fewer landmarks is no keyframe; those landmarks go
+  std::uint64_t max_bytes = 0;  ///< of the file; 0 = no limit
+  double appearance_share = 0;  ///< of the file, set aside for further descriptors; without max_bytes any > 0 keeps them all
+  bool fills_budget = false;    ///< choose again, more landmarks, where the first choice leaves much of max_bytes
 };
 
 struct MapBuildReport {
-  std::uint32_t num_frames = 0, num_frames_skipped = 0;
+  std::uint32_t num_frames = 0;
   std::uint64_t num_observations = 0;
   std::uint32_t num_landmarks_before = 0, num_landmarks = 0;  ///< before and after pruning and the byte budget
   std::uint32_t num_keyframes_before = 0, num_keyframes = 0;  ///< views with landmarks, and the set that covers them all

@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Each frame becomes a view (features with depth), each view goes to the fusion, which makes landmarks of what the views share,
+// and to the consistency, which measures how well the given poses agree. finish() hands both to map_assembly.
 #include "core/mapmaking/map_builder.h"
 
 #include <string>
@@ -9,18 +12,6 @@
 
 namespace camloc {
 namespace {
-
-FusionOptions fusion_options(const MapBuildOptions& options) {
-  FusionOptions fusion;
-  fusion.radius_px = options.fuse_radius_px;
-  fusion.max_distance = options.fuse_max_distance;
-  fusion.appearance_distance = options.appearance_distance;
-  fusion.max_descriptors = options.max_descriptors_per_landmark;
-  fusion.scale_factor = options.orb.scale_factor;
-  fusion.num_levels = options.orb.num_levels;
-  fusion.max_features = options.orb.num_features;
-  return fusion;
-}
 
 PoseConsistencyOptions consistency_options(const MapBuildOptions& options) {
   PoseConsistencyOptions consistency;
@@ -35,7 +26,7 @@ struct MapBuilder::Impl {
       : camera(rgbd_camera),
         options(build_options),
         extractor(camera, options.orb),
-        fusion(camera.color, camera.depth_noise, fusion_options(options)),
+        fusion(camera.color, camera.depth_noise, options.orb),
         consistency(camera, PyramidLevels(options.orb.scale_factor, options.orb.num_levels), consistency_options(options)) {}
 
   RgbdCamera camera;
@@ -53,10 +44,7 @@ Status MapBuilder::add_frame(const Frame& frame, const Rigid3& T_map_camera) {
   Status status = impl_->extractor.check(frame);
   if (status.is_ok() && !(T_map_camera.translation.allFinite() && T_map_camera.rotation.coeffs().allFinite()))
     status = {ErrorCode::kInvalid, "frame " + std::to_string(frame.sequence) + ": pose is not finite"};
-  if (!status.is_ok()) {
-    ++impl_->report.num_frames_skipped;
-    return status;
-  }
+  if (!status.is_ok()) return status;
   ViewFeatures view;
   impl_->extractor.extract(frame, &view);
   view.T_map_camera = T_map_camera;

@@ -23,7 +23,7 @@ class MapBuilder {
   ~MapBuilder();
 
   /// One view with its given pose. kInvalid when an image size does not fit the camera or the pose is not finite: the
-  /// frame is skipped and counted, the builder goes on. A frame without depth is skipped, too.
+  /// frame is skipped, the builder goes on. A frame without depth is skipped, too.
   [[nodiscard]] Status add_frame(const Frame& frame, const Rigid3& T_map_camera);
   /// The same for a view whose features were extracted before (ViewExtractor, with the options' OrbOptions), pose included.
   void add_view(const ViewFeatures& view);

@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Seeds far from each other (draw_seeds), then rounds of: each descriptor to its nearest word, each word to the bit-wise
+// majority of its descriptors. The inverted file counts the words of each keyframe's landmarks and weighs them by tf-idf.
 #include "core/mapmaking/vocabulary.h"
 
 #include <algorithm>
@@ -8,6 +11,7 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "core/base/mix_bits.h"
 #include "core/features/hamming.h"
@@ -16,24 +20,12 @@
 namespace camloc {
 namespace {
 
-class SplitMix {
- public:
-  explicit SplitMix(std::uint64_t seed) : state_(seed) {}
-  std::uint64_t next() {
-    const std::uint64_t result = mix_bits(state_);
-    state_ += 0x9E3779B97F4A7C15U;
-    return result;
-  }
-
- private:
-  std::uint64_t state_;
-};
-
 // Each further seed is drawn with a probability proportional to its squared distance to the nearest seed so far. Integers
 // throughout: the sum of the squares fits easily (256^2 times 2^40 descriptors).
 std::vector<Descriptor> draw_seeds(std::span<const Descriptor> descriptors, std::size_t num_words) {
-  SplitMix random(0x63616D6C6F63);
-  std::vector<Descriptor> seeds{descriptors[random.next() % descriptors.size()]};
+  std::uint64_t state = 0x63616D6C6F63;
+  const auto draw = [&state] { return mix_bits(std::exchange(state, state + 0x9E3779B97F4A7C15U)); };  // SplitMix64
+  std::vector<Descriptor> seeds{descriptors[draw() % descriptors.size()]};
   std::vector<std::uint16_t> nearest(descriptors.size(), 257), distance(descriptors.size());
   while (seeds.size() < num_words) {
     hamming_distances(seeds.back(), descriptors, distance.data());
@@ -43,7 +35,7 @@ std::vector<Descriptor> draw_seeds(std::span<const Descriptor> descriptors, std:
       total += static_cast<std::uint64_t>(nearest[i]) * nearest[i];
     }
     if (total == 0) break;  // fewer different descriptors than words
-    std::uint64_t mark = random.next() % total;
+    std::uint64_t mark = draw() % total;
     std::size_t chosen = 0;
     for (;; ++chosen) {
       const std::uint64_t weight = static_cast<std::uint64_t>(nearest[chosen]) * nearest[chosen];

@@ -26,10 +26,10 @@ const MapData& flat() {
 
 void report_sizes(std::span<const std::byte> bytes, benchmark::State* state) {
   const double num_landmarks = static_cast<double>(flat().landmarks.size());
-  for (std::uint32_t i = 0; i < map_format::kNumSections; ++i) {
+  for (std::uint32_t i = 0; i < map_format::kNumCoreSections; ++i) {
     const auto record = testing::section_record(bytes, static_cast<map_format::SectionId>(i));
     const auto section_bytes = static_cast<double>(record.num_elements * record.element_bytes);
-    state->counters[map_format::kSectionNames[i]] = section_bytes / num_landmarks;
+    state->counters[known_sections()[i].name] = section_bytes / num_landmarks;
   }
   state->counters["total"] = static_cast<double>(bytes.size()) / num_landmarks;
 }

@@ -44,6 +44,10 @@ void use(const MapView& view) {
   }
   Retriever retriever(view, 64);
   for (const auto& found : retriever.retrieve(view.words(), 5)) require(found.keyframe < info.num_keyframes);
+  require(view.sections().size() >= map_format::kNumCoreSections && view.sections().size() <= map_format::kMaxSections);
+  for (const MapSection& section : view.sections()) {
+    for (const std::byte byte : view.section(section.record.id)) sum += static_cast<std::uint64_t>(byte);
+  }
   volatile std::uint64_t keep = sum;
   static_cast<void>(keep);
 }

@@ -19,7 +19,8 @@ TEST(Accelerometer, ReadsTumFiles) {
 }
 
 TEST(Accelerometer, MultiplesOfGravityBecomeMetres) {
-  const auto samples = parse_accelerometer("1 0 1 0\n2 0.1 0.99 0\n3 0 1.6 0\n", "a.txt");
+  const TestFolder folder;
+  const auto samples = read_accelerometer(folder.write("a.txt", "1 0 1 0\n2 0.1 0.99 0\n3 0 1.6 0\n"));
   ASSERT_TRUE(samples.is_ok());
   EXPECT_NEAR((*samples)[0].acceleration.y(), kStandardGravity, 1e-12);
 }
@@ -39,8 +40,9 @@ TEST(Accelerometer, ErrorsNameFileAndLine) {
       {"1 3 819 -5\n", "typical length 819"},
       {"1 0 0 0\n", "typical length 0"},
   };
+  const TestFolder folder;
   for (const auto& one : cases) {
-    const auto samples = parse_accelerometer(one.text, "a.txt");
+    const auto samples = read_accelerometer(folder.write("a.txt", one.text));
     ASSERT_FALSE(samples.is_ok()) << one.text;
     EXPECT_NE(samples.status().message().find(one.part), std::string::npos) << samples.status().message();
   }

@@ -12,6 +12,7 @@
 #include <numbers>
 
 #include "core/map/landmark_codes.h"
+#include "core/map/map_unpack.h"
 #include "core/map/map_writer.h"
 #include "tests/map/synthetic_map.h"
 
@@ -129,7 +130,7 @@ TEST(MapFormat, FileIsLaidOutAsDocumented) {
   ASSERT_TRUE(bytes.is_ok()) << bytes.status().message();
   EXPECT_EQ(std::memcmp(bytes->data(), "CMAP\r\n\x1a\n", 8), 0);
   EXPECT_EQ(number_at<std::uint32_t>(*bytes, 8), 0x01020304U);
-  EXPECT_EQ(number_at<std::uint32_t>(*bytes, 12), 1U);
+  EXPECT_EQ(number_at<std::uint32_t>(*bytes, 12), 2U);
   EXPECT_EQ(number_at<std::uint64_t>(*bytes, 16), bytes->size());
   EXPECT_EQ(number_at<std::uint64_t>(*bytes, 24), XXH3_64bits(bytes->data() + 64, 448 - 64));
   EXPECT_EQ(number_at<std::uint32_t>(*bytes, 32), 11U);
@@ -140,23 +141,68 @@ TEST(MapFormat, FileIsLaidOutAsDocumented) {
   for (std::uint32_t i = 0; i < 11; ++i) {
     const std::size_t entry = 64 + 32 * i;
     EXPECT_EQ(number_at<std::uint32_t>(*bytes, entry), i);
-    EXPECT_EQ(number_at<std::uint32_t>(*bytes, entry + 4), kElementBytes[i]);
+    EXPECT_EQ(number_at<std::uint16_t>(*bytes, entry + 4), kElementBytes[i]);
+    EXPECT_EQ(number_at<std::uint16_t>(*bytes, entry + 6), 0U);
     EXPECT_EQ(number_at<std::uint64_t>(*bytes, entry + 8), offset);
     const auto num_elements = number_at<std::uint64_t>(*bytes, entry + 16);
     const std::uint64_t padded = (num_elements * kElementBytes[i] + 63) / 64 * 64;
     ASSERT_LE(offset + padded, bytes->size());
-    EXPECT_EQ(number_at<std::uint64_t>(*bytes, entry + 24), XXH3_64bits(bytes->data() + offset, padded)) << kSectionNames[i];
+    EXPECT_EQ(number_at<std::uint64_t>(*bytes, entry + 24), XXH3_64bits(bytes->data() + offset, padded)) << known_sections()[i].name;
     offset += padded;
   }
   EXPECT_EQ(offset, bytes->size());
 }
 
 // A new value here means that the bytes of a map changed: then kVersion must change too, or old maps are misread.
-TEST(MapFormat, BytesOfVersion1DoNotChange) {
+TEST(MapFormat, BytesOfVersion2DoNotChange) {
   const auto bytes = serialize_map(testing::make_synthetic_map());
   ASSERT_TRUE(bytes.is_ok());
-  ASSERT_EQ(kVersion, 1U);
-  EXPECT_EQ(XXH3_64bits(bytes->data(), bytes->size()), 14926840903022844825U);
+  ASSERT_EQ(kVersion, 2U);
+  EXPECT_EQ(XXH3_64bits(bytes->data(), bytes->size()), 9233094745959697601U);
+}
+
+// data/format1.cmap was written by the last camloc of format 1, from these options.
+testing::SyntheticMapOptions format1_options() {
+  return {.num_landmarks = 6, .num_keyframes = 2, .landmarks_per_keyframe = 4, .num_words = 3};
+}
+
+std::string format1_path() { return (std::filesystem::path(__FILE__).parent_path() / "data/format1.cmap").string(); }
+
+TEST(MapFormat, Format1IsReadAndWrittenAgainAsFormat2) {
+  const Result<MapView> old_map = MapView::open(format1_path());
+  ASSERT_TRUE(old_map.is_ok()) << old_map.status().message();
+  EXPECT_EQ(old_map->info().version, 1U);
+  EXPECT_EQ(old_map->sections().size(), kNumCoreSections);
+
+  const auto rewritten = serialize_map(unpack_map(*old_map));
+  ASSERT_TRUE(rewritten.is_ok()) << rewritten.status().message();
+  EXPECT_EQ(*rewritten, *serialize_map(testing::make_synthetic_map(format1_options())));
+  EXPECT_EQ(number_at<std::uint32_t>(*rewritten, 12), 2U);
+  // The same map: only the version and the hash of the header are others.
+  const std::vector<std::byte> old_bytes = testing::read_bytes(format1_path());
+  EXPECT_EQ(number_at<std::uint64_t>(*rewritten, 24), old_map->info().map_id);
+  ASSERT_EQ(rewritten->size(), old_bytes.size());
+  EXPECT_TRUE(std::equal(old_bytes.begin() + 64, old_bytes.end(), rewritten->begin() + 64));
+}
+
+TEST(MapFormat, Format1HasNeitherFurtherSectionsNorFlags) {
+  const testing::TemporaryFolder folder;
+  const auto opened = [&](std::span<std::byte> bytes) {
+    testing::reseal(bytes);
+    testing::write_bytes(folder.file("map.cmap"), bytes);
+    return MapView::open(folder.file("map.cmap")).status();
+  };
+  std::vector<std::byte> bytes = testing::read_bytes(format1_path());
+  ASSERT_TRUE(opened(bytes).is_ok());
+  bytes[64 + 32 * 10 + 6] = std::byte{1};
+  EXPECT_NE(opened(bytes).message().find("section wcs has flags"), std::string::npos);
+
+  MapData map = testing::make_synthetic_map(format1_options());
+  map.extra_sections[section_id("TEST")].bytes.resize(8);
+  bytes = *serialize_map(map);
+  ASSERT_TRUE(opened(bytes).is_ok());
+  bytes[12] = std::byte{1};
+  EXPECT_NE(opened(bytes).message().find("wrong section table"), std::string::npos);
 }
 
 }  // namespace

@@ -1,15 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What goes into a map comes out again, up to the quantization; contradictory data are refused; a failed write leaves
-// the old file as it was and nothing else behind.
+// What goes into a map comes out again, up to the quantization; contradictory data are refused. How the file
+// is replaced is tested in replace_file_test.cc.
 #include "core/map/map_writer.h"
 
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <array>
 #include <filesystem>
@@ -18,7 +14,6 @@
 #include <map>
 #include <set>
 
-#include "core/io/replace_file.h"
 #include "core/map/map_view.h"
 #include "tests/map/synthetic_map.h"
 
@@ -128,7 +123,7 @@ TEST(MapWriter, WordsAndGlobalsRoundTrip) {
   }
   const MapInfo& info = view.info();
   EXPECT_EQ(info.name, map.name);
-  EXPECT_EQ(info.version, 1U);
+  EXPECT_EQ(info.version, map_format::kVersion);
   EXPECT_EQ(info.pose_sigma_m, map.pose_sigma_m);
   EXPECT_EQ(info.pose_sigma_rad, map.pose_sigma_rad);
   EXPECT_EQ(info.orb_scale_factor, map.orb_scale_factor);
@@ -210,6 +205,19 @@ TEST(MapWriter, RefusesContradictoryData) {
       {"bad camera", [](MapData* m) { m->camera.color.fx = -1; }},
       {"negative pose sigma", [](MapData* m) { m->pose_sigma_m = -0.1; }},
       {"no pyramid", [](MapData* m) { m->orb_num_levels = 0; }},
+      {"an extra section with the id of a core one", [](MapData* m) { m->extra_sections[map_format::SectionId::kWcs] = {}; }},
+      {"an extra section of broken elements",
+       [](MapData* m) {
+         m->extra_sections[map_format::section_id("TEST")] = {true, 4, std::vector<std::byte>(6)};
+       }},
+      {"an extra section of elements of no size",
+       [](MapData* m) {
+         m->extra_sections[map_format::section_id("TEST")] = {true, 0, {}};
+       }},
+      {"too many extra sections",
+       [](MapData* m) {
+         for (std::uint32_t i = 0; i < 54; ++i) m->extra_sections[map_format::SectionId{1000 + i}] = {};
+       }},
       {"nan wcs", [](MapData* m) { m->wcs->covariance(2, 3) = kNan; }},
   };
   for (const Case& c : cases) {
@@ -237,73 +245,11 @@ TEST(MapWriter, ReplacesTheFileAndLeavesNothingElse) {
   EXPECT_EQ(num_files(folder), 1U);
 }
 
-TEST(MapWriter, FollowsASymbolicLink) {
-  const TemporaryFolder folder;
-  ASSERT_TRUE(write_map(make_synthetic_map(), folder.file("real.cmap")).is_ok());
-  std::filesystem::create_symlink("real.cmap", folder.file("link.cmap"));
-  ASSERT_TRUE(write_map(make_synthetic_map({.seed = 2}), folder.file("link.cmap")).is_ok());
-  EXPECT_TRUE(std::filesystem::is_symlink(folder.file("link.cmap")));
-  EXPECT_EQ(read_bytes(folder.file("real.cmap")), *serialize_map(make_synthetic_map({.seed = 2})));
-}
-
-TEST(MapWriter, DiskFullLeavesTheOldFile) {
-  const TemporaryFolder folder;
-  const std::string path = folder.file("map.cmap");
-  ASSERT_TRUE(write_map(make_synthetic_map({.seed = 1}), path).is_ok());
-  const auto before = read_bytes(path);
-
-  // The limit on the size of a file fails in the middle of the write, as a full disk does.
-  rlimit old_limit{};
-  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &old_limit), 0);
-  const auto old_handler = ::signal(SIGXFSZ, SIG_IGN);
-  const rlimit small{1000, old_limit.rlim_max};
-  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-  const Status status = write_map(make_synthetic_map({.seed = 2}), path);
-  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &old_limit), 0);
-  ::signal(SIGXFSZ, old_handler);
-
-  EXPECT_EQ(status.code(), ErrorCode::kIo);
-  EXPECT_NE(status.message().find(path), std::string::npos) << status.message();
-  EXPECT_EQ(read_bytes(path), before);
-  EXPECT_EQ(num_files(folder), 1U);
-}
-
 TEST(MapWriter, RefusesAFolderAndAMissingFolder) {
   const TemporaryFolder folder;
   EXPECT_EQ(write_map(make_synthetic_map(), folder.path().string()).code(), ErrorCode::kIo);
   EXPECT_EQ(write_map(make_synthetic_map(), folder.file("missing/map.cmap")).code(), ErrorCode::kIo);
   EXPECT_EQ(num_files(folder), 0U);
-}
-
-// In a child, because root may write anywhere and cannot come back from another user.
-TEST(MapWriter, LeavesDevicesAndPipesAlone) {
-  const std::string pipe = ::testing::TempDir() + "map_writer_pipe";
-  std::filesystem::remove(pipe);
-  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  const std::array<std::byte, 4> bytes{};
-  const Status status = replace_file(pipe, bytes);
-  EXPECT_EQ(status.code(), ErrorCode::kIo);
-  EXPECT_NE(status.message().find("no file"), std::string::npos) << status.message();
-  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
-  std::filesystem::remove(pipe);
-}
-
-TEST(MapWriterDeathTest, UnwritableFolderLeavesTheOldFile) {
-  const TemporaryFolder folder;
-  const std::string path = folder.file("map.cmap");
-  ASSERT_TRUE(write_map(make_synthetic_map({.seed = 1}), path).is_ok());
-  const auto before = read_bytes(path);
-  ASSERT_EQ(::chmod(folder.path().c_str(), 0555), 0);
-  EXPECT_EXIT(
-      {
-        if (::geteuid() == 0 && ::setuid(65534) != 0) ::_exit(2);
-        const Status status = write_map(make_synthetic_map({.seed = 2}), path);
-        ::_exit(status.code() == ErrorCode::kIo ? 0 : 1);
-      },
-      ::testing::ExitedWithCode(0), "");
-  EXPECT_EQ(read_bytes(path), before);
-  EXPECT_EQ(num_files(folder), 1U);
-  ASSERT_EQ(::chmod(folder.path().c_str(), 0755), 0);
 }
 
 }  // namespace

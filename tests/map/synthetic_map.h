@@ -214,6 +214,7 @@ inline std::vector<std::byte> read_bytes(const std::string& path) {
   return bytes;
 }
 
+/// The table entry of a core section.
 inline map_format::SectionRecord section_record(std::span<const std::byte> bytes, map_format::SectionId id) {
   map_format::SectionRecord record;
   const std::size_t offset = sizeof(map_format::FileHeader) + static_cast<std::size_t>(id) * sizeof record;
@@ -225,19 +226,20 @@ inline map_format::SectionRecord section_record(std::span<const std::byte> bytes
 /// would do. Sections whose place makes no sense keep their hash.
 inline void reseal(std::span<std::byte> bytes) {
   using namespace map_format;
-  constexpr std::size_t kUnpaddedEnd = sizeof(FileHeader) + kNumSections * sizeof(SectionRecord);
-  constexpr std::size_t kTableEnd = (kUnpaddedEnd + kAlignment - 1) & ~(kAlignment - 1);
-  if (bytes.size() < kTableEnd) return;
-  for (std::size_t i = 0; i < kNumSections; ++i) {
+  FileHeader header;
+  if (bytes.size() < sizeof header) return;
+  std::memcpy(&header, bytes.data(), sizeof header);
+  if (header.num_sections > kMaxSections) return;
+  const std::size_t table_end = first_section_offset(header.num_sections);
+  if (bytes.size() < table_end) return;
+  for (std::size_t i = 0; i < header.num_sections; ++i) {
     SectionRecord record = section_record(bytes, static_cast<SectionId>(i));
     const std::uint64_t padded = (record.num_elements * record.element_bytes + kAlignment - 1) & ~(kAlignment - 1);
     if (record.offset > bytes.size() || padded > bytes.size() - record.offset) continue;
     record.hash = map_hash(bytes.subspan(record.offset, padded));
     std::memcpy(bytes.data() + sizeof(FileHeader) + i * sizeof record, &record, sizeof record);
   }
-  FileHeader header;
-  std::memcpy(&header, bytes.data(), sizeof header);
-  header.map_id = map_hash(bytes.subspan(sizeof header, kTableEnd - sizeof header));
+  header.map_id = map_hash(bytes.subspan(sizeof header, table_end - sizeof header));
   std::memcpy(bytes.data(), &header, sizeof header);
   header.header_hash = map_hash(bytes.first(offsetof(FileHeader, header_hash)));
   std::memcpy(bytes.data(), &header, sizeof header);

@@ -77,9 +77,7 @@ TEST(MapAssembly, KeepsWhatIsWorthMost) {
 TEST(MapAssembly, LandmarksBelowTheLeastWorthGo) {
   WallMap wall(600);
   for (std::uint32_t i = 0; i < 600; ++i) wall.parts.worth.push_back(i < 300 ? 1.0F : 2.0F);
-  MapBuildOptions options;
-  options.min_observations = 2;
-  const auto map = assemble_map(wall.parts, options, nullptr);
+  const auto map = assemble_map(wall.parts, {}, nullptr);
   ASSERT_TRUE(map.is_ok());
   EXPECT_LT(map.value().landmarks.size(), 600U);
   EXPECT_GE(map.value().landmarks.size(), 300U);
@@ -111,7 +109,6 @@ TEST(MapAssembly, FillsTheBudgetWhereAskedTo) {
   const WallMap wall(3000);
   MapBuildOptions options;
   options.max_bytes = 60000;
-  options.max_bytes_per_landmark = 75;  // a cautious guess leaves much of the budget
   const auto cautious = assemble_map(wall.parts, options, nullptr);
   options.fills_budget = true;
   MapBuildReport report;

@@ -35,6 +35,27 @@ TEST(MapInfoCommand, SaysWhereTheMapLies) {
   EXPECT_NE(run_command(add_map_command, {"map", "info", path}).out.find("the middle of the map is at "), std::string::npos);
 }
 
+TEST(MapInfoCommand, ListsTheSections) {
+  const TemporaryFolder folder;
+  MapData map = camloc::testing::make_synthetic_map({});
+  map.extra_sections[map_format::section_id("LATR")] = {true, 4, std::vector<std::byte>(20)};
+  const std::string path = folder / "site.cmap";
+  ASSERT_TRUE(write_map(map, path).is_ok());
+  const auto info = nlohmann::json::parse(run_command(add_map_command, {"map", "info", path, "--json"}).out);
+  EXPECT_EQ(info["version"], 2);
+  ASSERT_EQ(info["sections"].size(), 12U);
+  EXPECT_EQ(info["sections"][2],
+            nlohmann::json::parse(R"({"name": "landmarks", "known": true, "optional": false, "elements": 40, "bytes": 640})"));
+  EXPECT_EQ(info["sections"][11],
+            nlohmann::json::parse(R"({"name": "LATR", "known": false, "optional": true, "elements": 5, "bytes": 20})"));
+  for (const char* command : {"info", "verify"}) {
+    const CommandOutput output = run_command(add_map_command, {"map", command, path});
+    EXPECT_EQ(output.exit_code, 0);
+    EXPECT_NE(output.out.find("section LATR, 20 bytes"), std::string::npos) << output.out;
+    EXPECT_EQ(run_command(add_map_command, {"map", command, write_site(folder, true)}).out.find("skipped"), std::string::npos);
+  }
+}
+
 TEST(MapInfoCommand, SaysHowToPlaceAMap) {
   const TemporaryFolder folder;
   const std::string path = write_site(folder, false);

@@ -64,6 +64,20 @@ void print_datum(const MapView& map) {
               p.z(), position_sigma_m(middle.covariance), turn_sigma_deg(middle.covariance));
 }
 
+bool is_optional(const MapSection& section) { return (section.record.flags & map_format::kSectionIsOptional) != 0; }
+
+Json sections_json(const MapView& map) {
+  Json sections = Json::array();
+  for (const MapSection& section : map.sections()) {
+    sections.push_back({{"name", section.name},
+                        {"known", section.kind != nullptr},
+                        {"optional", is_optional(section)},
+                        {"elements", section.record.num_elements},
+                        {"bytes", section.bytes.size()}});
+  }
+  return sections;
+}
+
 void print_json(const MapView& map, double open_ms) {
   const MapInfo& info = map.info();
   char id[20];
@@ -84,8 +98,17 @@ void print_json(const MapView& map, double open_ms) {
                   {"camera", info.camera.name},
                   {"georeferenced", info.wcs.has_value()},
                   {"T_wcs_map", datum_json(map)},
+                  {"sections", sections_json(map)},
                   {"open_ms", open_ms}};
   std::printf("%s\n", json.dump(1).c_str());
+}
+
+/// What is in the map and nobody here can use.
+void print_skipped(const MapView& map) {
+  for (const MapSection& section : map.sections()) {
+    if (section.kind == nullptr)
+      std::printf("skipped      section %s, %zu bytes: optional, made by a newer camloc\n", section.name.c_str(), section.bytes.size());
+  }
 }
 
 void print_table(const MapView& map, double open_ms) {
@@ -104,6 +127,7 @@ void print_table(const MapView& map, double open_ms) {
   }
   std::printf("camera       %s\n", info.camera.name.c_str());
   print_datum(map);
+  print_skipped(map);
 }
 
 Status show_info(const MapArguments& arguments) {
@@ -124,6 +148,7 @@ Status verify_map(const MapArguments& arguments) {
   if (!map) return map.status();
   std::printf("%s: whole: %u landmarks, %u keyframes, all checksums and indices right\n", arguments.path.c_str(), map->info().num_landmarks,
               map->info().num_keyframes);
+  print_skipped(*map);
   return Status::ok();
 }
 

@@ -28,12 +28,9 @@ struct MapPoints {
 
 MapPoints points_of(const MapView& map, std::uint32_t min_observations) {
   MapPoints points;
-  for (const auto& cube : map.cubes()) {
-    for (const auto& landmark : map.landmarks().subspan(cube.first_landmark, cube.num_landmarks)) {
-      if (landmark.num_observations < min_observations) continue;
-      points.landmarks.push_back(MapView::position_m(cube, landmark).cast<double>());
-    }
-  }
+  map.for_each_position([&](const auto& landmark, const Eigen::Vector3f& position_m) {
+    if (landmark.num_observations >= min_observations) points.landmarks.push_back(position_m.cast<double>());
+  });
   for (std::uint32_t i = 0; i < map.keyframes().size(); ++i) points.T_map_keyframe.push_back(map.keyframe_pose(i));
   return points;
 }

@@ -60,11 +60,7 @@ std::optional<Eigen::Vector3d> upright_axis(const MapView& map) {
 std::vector<Eigen::Vector3d> landmark_positions(const MapView& map) {
   std::vector<Eigen::Vector3d> points;
   points.reserve(map.landmarks().size());
-  for (const auto& cube : map.cubes()) {
-    for (const auto& landmark : map.landmarks().subspan(cube.first_landmark, cube.num_landmarks)) {
-      points.push_back(MapView::position_m(cube, landmark).cast<double>());
-    }
-  }
+  map.for_each_position([&](const auto&, const Eigen::Vector3f& position_m) { points.push_back(position_m.cast<double>()); });
   return points;
 }
 
