@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "core/base/order_statistics.h"
-#include "core/optimize/pose_graph_terms.h"
 
 namespace camloc {
 namespace {
@@ -68,7 +67,7 @@ void add_links(std::span<const PoseGraphEdge> links, MapExtract* extract) {
     link.i = extract->camera_of_keyframe[link.i];
     link.j = extract->camera_of_keyframe[link.j];
     if (link.i == kAbsent || link.j == kAbsent) continue;
-    chi2.push_back(edge_term(link, problem.T_map_camera[link.i], problem.T_map_camera[link.j]).residual.squaredNorm());
+    chi2.push_back(link.linearize({problem.T_map_camera[link.i], problem.T_map_camera[link.j]}).residual.squaredNorm());
     problem.links.push_back(link);
   }
   if (chi2.empty()) return;
