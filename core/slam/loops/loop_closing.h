@@ -13,7 +13,6 @@
 #include "core/optimize/pose_graph.h"
 #include "core/slam/dead_reckoning.h"
 #include "core/slam/loops/loop_detection.h"
-#include "core/slam/loops/loop_options.h"
 #include "core/slam/loops/place_index.h"
 #include "core/slam/slam_map.h"
 #include "core/slam/view_registration.h"
@@ -32,7 +31,7 @@ struct LoopReport {
 
 class LoopCloser {
  public:
-  LoopCloser(const LoopOptions& options, SlamMap* map, ViewRegistration* registration);
+  LoopCloser(const SlamNumbers& numbers, SlamMap* map, ViewRegistration* registration);
   LoopCloser(const LoopCloser&) = delete;
   LoopCloser& operator=(const LoopCloser&) = delete;
 
@@ -51,7 +50,7 @@ class LoopCloser {
   void fuse(const std::vector<LoopMatch>& matches);
   void fuse_surroundings(const LoopMatch& match);
 
-  LoopOptions options_;
+  SlamNumbers numbers_;
   SlamMap* map_;
   ViewRegistration* registration_;
   DeadReckoning reckoning_;
