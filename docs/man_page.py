@@ -9,6 +9,7 @@ Lines of the frame that are replaced: @SYNOPSIS@, @OPTIONS@ and @COMMANDS@ from 
 --print-config of camlocd, @SOURCES@ from list_frame_sources; @VERSION@ anywhere.
 """
 import argparse
+import dataclasses
 import re
 import subprocess
 
@@ -109,9 +110,12 @@ def format_commands(tree):
 
 
 def format_synopsis(tree):
+    commands = f"{bold(tree.path[0])}\n{italic('command')}\n[{italic('options')}]\n"
     if not tree.subcommands:
         return synopsis(tree)
-    return f"{bold(tree.path[0])}\n{italic('command')}\n[{italic('options')}]\n"
+    if all(is_help(entry) for entry in tree.options):
+        return commands
+    return synopsis(dataclasses.replace(tree, subcommands=[])) + ".br\n" + commands
 
 
 def format_settings(camlocd):

@@ -15,7 +15,12 @@
 namespace camloc {
 namespace {
 
-constexpr double kKernelSigmas = 2;  // Huber
+constexpr int kMaxIterations = 25;
+constexpr double kMinGreySigma = 0.5;     // grey levels; the residuals may say more
+constexpr double kMinOverlap = 0.35;      // share of cells with depth that fall on cells with depth
+constexpr double kMinInlierShare = 0.75;  // of those, that agree in depth
+constexpr double kMaxPriorSigmas = 5;     // how far from the prediction the result may be
+constexpr double kKernelSigmas = 2;       // Huber
 constexpr double kDepthInlierSigmas = 4;
 constexpr double kMaxDepthStepShare = 0.05;                     // a cell beside one so much nearer or farther is at an edge
 constexpr double kDepthSigmaShare = 0.5, kDepthSigmaM = 0.001;  // an average of cells is better than a pixel, but shares its bias
@@ -128,8 +133,6 @@ Vector6d change_from(const Rigid3& T_a_b_predicted, const Rigid3& T_a_b) {
 
 }  // namespace
 
-DenseAligner::DenseAligner(const RgbdCamera& camera, const DenseAlignmentOptions& options) : camera_(camera), options_(options) {}
-
 void DenseAligner::prepare(const ViewThumbnail& b) {
   points_.clear();
   remove_slow_changes(b, &grey_b_);
@@ -177,7 +180,7 @@ DenseAligner::Equations DenseAligner::linearize(const ViewThumbnail& a, const Vi
   std::vector<double> sizes;
   sizes.reserve(pairs_.size());
   for (const Pair& pair : pairs_) sizes.push_back(std::abs(pair.grey - grey_mean));
-  const double measured_sigma = 1.48 * upper_median(std::move(sizes)), grey_sigma = std::max(measured_sigma, options_.min_grey_sigma);
+  const double measured_sigma = 1.48 * upper_median(std::move(sizes)), grey_sigma = std::max(measured_sigma, kMinGreySigma);
   const double noise_slope = kSlopeNoise * measured_sigma * measured_sigma;
   std::size_t num_inliers = 0;
   for (const Pair& pair : pairs_) {
@@ -206,9 +209,9 @@ DenseAlignment DenseAligner::align(const ViewThumbnail& a, const ViewThumbnail& 
   const Matrix6d prior = rotate_covariance(T_a_b_predicted.rotation.conjugate(), covariance).inverse();
   result.T_a_b = T_a_b_predicted;
   Equations equations;
-  for (int i = 0; i < options_.max_iterations; ++i) {
+  for (int i = 0; i < kMaxIterations; ++i) {
     equations = linearize(a, b, result.T_a_b);
-    if (equations.overlap < options_.min_overlap) return result;
+    if (equations.overlap < kMinOverlap) return result;
     const Matrix6d H = equations.H + prior;
     const Vector6d step = -H.llt().solve(equations.g + prior * change_from(T_a_b_predicted, result.T_a_b));
     if (!step.allFinite()) return result;
@@ -220,8 +223,8 @@ DenseAlignment DenseAligner::align(const ViewThumbnail& a, const ViewThumbnail& 
   result.inlier_share = equations.inlier_share;
   result.covariance = rotate_covariance(result.T_a_b.rotation, (equations.H + prior).inverse());
   const Vector6d change = change_from(T_a_b_predicted, result.T_a_b);
-  result.is_aligned = result.overlap >= options_.min_overlap && result.inlier_share >= options_.min_inlier_share &&
-                      change.dot(prior * change) <= options_.max_prior_sigmas * options_.max_prior_sigmas;
+  result.is_aligned = result.overlap >= kMinOverlap && result.inlier_share >= kMinInlierShare &&
+                      change.dot(prior * change) <= kMaxPriorSigmas * kMaxPriorSigmas;
   return result;
 }
 

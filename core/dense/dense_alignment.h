@@ -15,14 +15,6 @@
 
 namespace camloc {
 
-struct DenseAlignmentOptions {
-  int max_iterations = 25;
-  double min_grey_sigma = 0.5;     ///< grey levels; the residuals may say more
-  double min_overlap = 0.35;       ///< share of cells with depth that fall on cells with depth
-  double min_inlier_share = 0.75;  ///< of those, that agree in depth
-  double max_prior_sigmas = 5;     ///< how far from the prediction the result may be
-};
-
 struct DenseAlignment {
   bool is_aligned = false;
   Rigid3 T_a_b;
@@ -33,7 +25,7 @@ struct DenseAlignment {
 /// Not thread-safe. The same input gives the same bits.
 class DenseAligner {
  public:
-  DenseAligner(const RgbdCamera& camera, const DenseAlignmentOptions& options);
+  explicit DenseAligner(const RgbdCamera& camera) : camera_(camera) {}
 
   /// Starts at the prediction, which is a measurement like any other: directions that the views say nothing about, as along a
   /// bare wall, stay as predicted, with the covariance of the prediction (that of pose_error(), axes of a).
@@ -58,7 +50,6 @@ class DenseAligner {
     double grey, depth, depth_sigma, slope_squared;  ///< depth: inverse, 1 / m
   };
   RgbdCamera camera_;
-  DenseAlignmentOptions options_;
   std::vector<float> grey_a_, grey_b_;     ///< without slow changes
   std::vector<float> inverse_a_;           ///< of the depth, 1 / m
   std::vector<Eigen::Vector2f> slopes_a_;  ///< of that, a cell

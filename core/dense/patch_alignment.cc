@@ -16,6 +16,10 @@ constexpr double kWeightSigmaPx = 3.5;
 constexpr double kMinVariance = 9;    // grey levels squared, below which there is nothing to align
 constexpr double kNoiseVariance = 4;  // of a pixel, at least: sensor noise and compression
 constexpr double kCorrelated = 4;     // neighbouring pixels of a smoothed image do not err independently
+constexpr int kMaxIterations = 15;
+constexpr double kMaxShiftPx = 2.5;      // pixels of the target's level
+constexpr double kMinCorrelation = 0.8;  // of the two patches once they are aligned, brightness and contrast aside
+constexpr double kMaxSigmaPx = 0.7;      // of the position, in the direction in which it is known least; a detector is not better
 constexpr double kMaxStepPx = 1.0, kSettledPx = 0.01, kUnsettledPx = 0.1;
 
 /// Pixels within the circle, as offsets from its middle, with their weights.
@@ -143,8 +147,7 @@ double worst_sigma_px(const Template& wanted, const Comparison& found) {
 
 }  // namespace
 
-PatchAlignment align_patch(const PatchAlignmentOptions& options, const FeaturePatch& reference, const Eigen::Matrix2d& A_reference_target,
-                           const FeaturePatch& target) {
+PatchAlignment align_patch(const FeaturePatch& reference, const Eigen::Matrix2d& A_reference_target, const FeaturePatch& target) {
   static const Window window = make_window();
   PatchAlignment result;
   const std::optional<Template> wanted = make_template(window, reference, A_reference_target);
@@ -152,7 +155,7 @@ PatchAlignment align_patch(const PatchAlignmentOptions& options, const FeaturePa
   if (!(wanted->variance >= kMinVariance) || !(wanted->gradients.determinant() > 1e-6)) return {PatchVerdict::kFlat, {}, 0, 0};
   Comparison found;
   double last_step_px = kMaxStepPx;
-  for (int i = 0; i < options.max_iterations && last_step_px > kSettledPx; ++i) {
+  for (int i = 0; i < kMaxIterations && last_step_px > kSettledPx; ++i) {
     const std::optional<Comparison> compared = compare(window, *wanted, target, result.shift_px);
     if (!compared) return result;
     found = *compared;
@@ -160,14 +163,14 @@ PatchAlignment align_patch(const PatchAlignmentOptions& options, const FeaturePa
     if (!(found.correlation > 0)) return result;
     last_step_px = found.step.norm();
     result.shift_px += last_step_px > kMaxStepPx ? (kMaxStepPx / last_step_px * found.step).eval() : found.step;
-    if (result.shift_px.norm() > 1.5 * options.max_shift_px) return result;
+    if (result.shift_px.norm() > 1.5 * kMaxShiftPx) return result;
   }
-  if (last_step_px > kUnsettledPx || result.shift_px.norm() > options.max_shift_px) return result;
+  if (last_step_px > kUnsettledPx || result.shift_px.norm() > kMaxShiftPx) return result;
   result.sigma_px = worst_sigma_px(*wanted, found);
-  if (result.correlation < options.min_correlation)
+  if (result.correlation < kMinCorrelation)
     result.verdict = PatchVerdict::kUnlike;
   else
-    result.verdict = result.sigma_px <= options.max_sigma_px ? PatchVerdict::kAligned : PatchVerdict::kFlat;
+    result.verdict = result.sigma_px <= kMaxSigmaPx ? PatchVerdict::kAligned : PatchVerdict::kFlat;
   return result;
 }
 

@@ -13,13 +13,6 @@
 
 namespace camloc {
 
-struct PatchAlignmentOptions {
-  int max_iterations = 15;
-  double max_shift_px = 2.5;     ///< pixels of the target's level
-  double min_correlation = 0.8;  ///< of the two patches once they are aligned, brightness and contrast aside
-  double max_sigma_px = 0.7;     ///< of the position, in the direction in which it is known least; a detector is not better
-};
-
 enum class PatchVerdict : std::uint8_t {
   kAligned,
   kOutside,  ///< the warp leads out of the reference
@@ -37,7 +30,7 @@ struct PatchAlignment {
 
 /// A pixel d of the target, counted from the point sought, corresponds to A_reference_target * d of the reference, counted from
 /// its middle. Within a circle of five pixels around the point; the same patches give the same bits.
-[[nodiscard]] PatchAlignment align_patch(const PatchAlignmentOptions& options, const FeaturePatch& reference,
-                                         const Eigen::Matrix2d& A_reference_target, const FeaturePatch& target);
+[[nodiscard]] PatchAlignment align_patch(const FeaturePatch& reference, const Eigen::Matrix2d& A_reference_target,
+                                         const FeaturePatch& target);
 
 }  // namespace camloc

@@ -14,6 +14,18 @@
 namespace camloc {
 namespace {
 
+constexpr double kRadiusPx = 2.5;        // of level 0, grows with the level
+constexpr int kMaxDistance = 64;         // of any two appearances
+constexpr double kMaxDepthSigmas = 3.0;  // tolerance along the optical axis
+constexpr double kMinDepthToleranceM = 0.02, kMaxDepthToleranceM = 0.30;
+constexpr float kMaxReferenceRatio = 2.0F;  // between the ranges of reference distances
+// For a different appearance.
+constexpr double kCloseRadiusPx = 1.5, kCloseDepthSigmas = 1.0, kCloseDepthToleranceM = 0.015;
+constexpr double kMinDirectionCosine = 0.85;
+constexpr int kMaxDifferentDistance = 96;   // of 256 bits; unrelated corners are 128 apart
+constexpr int kAppearanceDistance = 48;     // a descriptor farther than this from all others is a further appearance
+constexpr std::size_t kMaxDescriptors = 6;  // appearances a landmark may keep
+
 constexpr double kVoxelM = 0.30;           // as wide as the largest tolerance along a ray
 constexpr std::uint32_t kMaxSamples = 12;  // observations of a landmark that its descriptors were chosen from
 
@@ -64,7 +76,7 @@ struct Offset {
 
 class SameLandmarkFinder {
  public:
-  SameLandmarkFinder(const MapData& a, const MapData& b, const LandmarkMergingOptions& options) : a_(a), b_(b), options_(options) {
+  SameLandmarkFinder(const MapData& a, const MapData& b) : a_(a), b_(b) {
     for (std::uint32_t i = 0; i < a.landmarks.size(); ++i) voxels_[voxel_key(voxel_of(a.landmarks[i].position_m))].push_back(i);
   }
 
@@ -124,24 +136,22 @@ class SameLandmarkFinder {
   }
 
   [[nodiscard]] bool is_alike(const MapLandmark& in_a, const MapLandmark& in_b, const Offset& offset, int distance) const {
-    if (distance > options_.max_distance || offset.px > options_.radius_px) return false;
-    const double tolerance =
-        std::clamp(options_.max_depth_sigmas * offset.sigma_m, options_.min_depth_tolerance_m, options_.max_depth_tolerance_m);
-    const auto ratio = static_cast<float>(options_.max_reference_ratio);
+    if (distance > kMaxDistance || offset.px > kRadiusPx) return false;
+    const double tolerance = std::clamp(kMaxDepthSigmas * offset.sigma_m, kMinDepthToleranceM, kMaxDepthToleranceM);
+    const float ratio = kMaxReferenceRatio;
     return offset.depth_m <= tolerance && in_b.min_reference_m <= in_a.max_reference_m * ratio &&
            in_a.min_reference_m <= in_b.max_reference_m * ratio;
   }
 
   [[nodiscard]] bool is_same_place(const MapLandmark& in_a, const MapLandmark& in_b, const Offset& offset, int distance) const {
-    return distance <= options_.max_different_distance && offset.px <= options_.close_radius_px &&
-           offset.depth_m <= std::max(options_.close_depth_sigmas * offset.sigma_m, options_.close_depth_tolerance_m) &&
-           static_cast<double>(in_a.direction.dot(in_b.direction)) >= options_.min_direction_cosine &&
-           in_b.min_reference_m <= in_a.max_reference_m && in_a.min_reference_m <= in_b.max_reference_m;
+    return distance <= kMaxDifferentDistance && offset.px <= kCloseRadiusPx &&
+           offset.depth_m <= std::max(kCloseDepthSigmas * offset.sigma_m, kCloseDepthToleranceM) &&
+           static_cast<double>(in_a.direction.dot(in_b.direction)) >= kMinDirectionCosine && in_b.min_reference_m <= in_a.max_reference_m &&
+           in_a.min_reference_m <= in_b.max_reference_m;
   }
 
   const MapData& a_;
   const MapData& b_;
-  const LandmarkMergingOptions& options_;
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> voxels_;  ///< looked up only, never iterated
 };
 
@@ -168,12 +178,10 @@ void merge_positions(const MapLandmark& from, MapLandmark* into) {
 
 }  // namespace
 
-std::vector<SameLandmark> find_same_landmarks(const MapData& a, const MapData& b, const LandmarkMergingOptions& options) {
-  return SameLandmarkFinder(a, b, options).find();
-}
+std::vector<SameLandmark> find_same_landmarks(const MapData& a, const MapData& b) { return SameLandmarkFinder(a, b).find(); }
 
-std::uint32_t merge_landmark(const MapLandmark& from, const std::vector<std::uint32_t>& from_support, const LandmarkMergingOptions& options,
-                             MapLandmark* into, std::vector<std::uint32_t>* support) {
+std::uint32_t merge_landmark(const MapLandmark& from, const std::vector<std::uint32_t>& from_support, MapLandmark* into,
+                             std::vector<std::uint32_t>* support) {
   const float share =
       static_cast<float>(from.num_observations) / static_cast<float>(std::max(1U, from.num_observations + into->num_observations));
   merge_views(from, share, into);
@@ -195,11 +203,11 @@ std::uint32_t merge_landmark(const MapLandmark& from, const std::vector<std::uin
   std::vector<Appearance> kept;
   for (const Appearance& appearance : all) {
     const auto near = std::find_if(kept.begin(), kept.end(), [&](const Appearance& k) {
-      return hamming_distance(k.descriptor, appearance.descriptor) <= options.appearance_distance;
+      return hamming_distance(k.descriptor, appearance.descriptor) <= kAppearanceDistance;
     });
     if (near != kept.end())
       near->support += appearance.support;
-    else if (kept.size() < options.max_descriptors)
+    else if (kept.size() < kMaxDescriptors)
       kept.push_back(appearance);
   }
   std::stable_sort(kept.begin(), kept.end(), [](const Appearance& i, const Appearance& j) { return i.support > j.support; });

@@ -11,6 +11,8 @@
 namespace camloc {
 namespace {
 
+constexpr float kConfirmedWorth = 2;  // what a landmark counts more that was seen again on another day: it lasts
+
 constexpr double kMaxFocalRatio = 1.25;  // beyond, features of the two cameras lie on different pyramid levels
 
 Status check_pair(const MapData& a, const MapData& b) {
@@ -67,7 +69,7 @@ void add_views(const MapData& map, const std::vector<std::uint32_t>& new_index, 
   }
 }
 
-Union unite(const MapData& a, const MapData& b, const MapMergeOptions& options, MapMergeReport* report) {
+Union unite(const MapData& a, const MapData& b, MapMergeReport* report) {
   Union all;
   MapParts& parts = all.parts;
   parts.landmarks = a.landmarks;
@@ -76,14 +78,13 @@ Union unite(const MapData& a, const MapData& b, const MapMergeOptions& options, 
     index_a[i] = i;
     parts.support.push_back(guess_support(a.landmarks[i]));
   }
-  const std::vector<SameLandmark> same = find_same_landmarks(a, b, options.landmarks);
+  const std::vector<SameLandmark> same = find_same_landmarks(a, b);
   std::size_t next_same = 0;
   for (std::uint32_t i = 0; i < b.landmarks.size(); ++i) {
     const std::vector<std::uint32_t> support = guess_support(b.landmarks[i]);
     if (next_same < same.size() && same[next_same].b == i) {
       index_b[i] = same[next_same++].a;
-      report->num_appearances +=
-          merge_landmark(b.landmarks[i], support, options.landmarks, &parts.landmarks[index_b[i]], &parts.support[index_b[i]]);
+      report->num_appearances += merge_landmark(b.landmarks[i], support, &parts.landmarks[index_b[i]], &parts.support[index_b[i]]);
       continue;
     }
     index_b[i] = static_cast<std::uint32_t>(parts.landmarks.size());
@@ -95,7 +96,7 @@ Union unite(const MapData& a, const MapData& b, const MapMergeOptions& options, 
   add_views(a, index_a, &all);
   add_views(b, index_b, &all);
   for (const MapLandmark& landmark : parts.landmarks) parts.worth.push_back(static_cast<float>(landmark.num_observations));
-  for (const SameLandmark& confirmed : same) parts.worth[confirmed.a] *= static_cast<float>(options.confirmed_worth);
+  for (const SameLandmark& confirmed : same) parts.worth[confirmed.a] *= kConfirmedWorth;
   return all;
 }
 
@@ -133,7 +134,7 @@ Result<MapData> merge_maps(const MapView& a, const MapData& b, const MapMergeOpt
   adopt_focal_length(first.camera, &second);
   report->alignment = align_map(fixes.value(), &second);
 
-  Union all = unite(first, second, options, report);
+  Union all = unite(first, second, report);
   all.parts.camera = first.camera;
   all.parts.views = all.views;
   all.parts.poses = all.poses;

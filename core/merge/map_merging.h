@@ -31,8 +31,6 @@ namespace camloc {
 
 struct MapMergeOptions {
   MapRegistrationOptions registration;
-  LandmarkMergingOptions landmarks;
-  double confirmed_worth = 2;                  ///< what a landmark counts more that was seen again on another day: it lasts
   MapBuildOptions map = merged_map_options();  ///< its ORB settings are taken from the maps
 };
 

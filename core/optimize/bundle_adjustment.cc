@@ -13,7 +13,6 @@
 
 #include "core/geometry/pose_jacobian.h"
 #include "core/optimize/landmark_elimination.h"
-#include "core/optimize/pose_graph_terms.h"
 
 namespace camloc {
 namespace {
@@ -21,26 +20,15 @@ namespace {
 constexpr double kFirstDamping = 1e-4, kMinDamping = 1e-7, kMaxDamping = 1e8;
 constexpr double kLessDamping = 0.1, kMoreDamping = 10;
 
-bool is_usable(const PointPrior& prior) { return prior.position_m.allFinite() && prior.sigma_m > 0 && std::isfinite(prior.sigma_m); }
+constexpr double kLinkKernelSigmas = 3.5;  // over the Mahalanobis distance of a link, which has six dimensions
 
 bool is_before(const PointPrior& a, const PointPrior& b) { return a.landmark < b.landmark; }
 
 std::vector<PointPrior> sorted_priors(const std::vector<PointPrior>& priors) {
   std::vector<PointPrior> sorted;
-  std::copy_if(priors.begin(), priors.end(), std::back_inserter(sorted), is_usable);
+  std::copy_if(priors.begin(), priors.end(), std::back_inserter(sorted), [](const PointPrior& prior) { return prior.is_usable(); });
   std::stable_sort(sorted.begin(), sorted.end(), is_before);
   return sorted;
-}
-
-/// Robust cost and weight of a link by Cauchy's kernel; a link that makes no sense takes no part.
-struct RobustLink {
-  double cost = 0, weight = 0;
-};
-
-RobustLink robust_link(double chi2, double kernel_sigmas) {
-  if (!std::isfinite(chi2)) return {};
-  const double inner = kernel_sigmas * kernel_sigmas;
-  return {inner * std::log1p(chi2 / inner), 1 / (1 + chi2 / inner)};
 }
 
 class BundleAdjuster {
@@ -61,33 +49,36 @@ class BundleAdjuster {
   [[nodiscard]] BlockPattern covisibility() const;
   double linearize(const State& state, double damping);
   [[nodiscard]] double cost_of(const State& state) const;
-  double add_link(const PoseGraphEdge& link, const State& state);
   bool solve(double damping);
   void step(double damping);
   void place_landmarks_seen_once();
 
   const BundleOptions& options_;
-  BundleModel model_;
   BundleProblem& problem_;
   std::vector<PointPrior> priors_;
-  std::vector<std::uint32_t> free_index_;
-  std::uint32_t num_landmarks_, num_free_ = 0;
-  std::optional<ReducedCameras> reduced_;
+  PoseTermsOf<PoseGraphEdge> links_;
+  std::vector<const PoseTerms*> pose_terms_;  ///< links, and what else the problem brings
+  std::vector<std::uint32_t> rows_;           ///< of the cameras
+  std::uint32_t num_landmarks_, num_free_;
+  std::optional<PoseEquations> equations_;
   State state_, trial_;
   std::vector<Vector6d> camera_steps_;
 };
 
 BundleAdjuster::BundleAdjuster(const BundleOptions& options, BundleProblem* problem)
     : options_(options),
-      model_(options),
       problem_(*problem),
       priors_(sorted_priors(problem->priors)),
-      num_landmarks_(static_cast<std::uint32_t>(problem->landmarks_m.size())) {
-  for (const std::uint8_t is_fixed : problem->is_camera_fixed) free_index_.push_back(is_fixed != 0 ? kFixedCamera : num_free_++);
+      links_(problem->links, kLinkKernelSigmas),
+      pose_terms_{&links_},
+      rows_(rows_of_poses(problem->is_camera_fixed)),
+      num_landmarks_(static_cast<std::uint32_t>(problem->landmarks_m.size())),
+      num_free_(num_free_poses(rows_)) {
+  pose_terms_.insert(pose_terms_.end(), problem->pose_terms.begin(), problem->pose_terms.end());
   if (num_free_ > options.max_dense_cameras)
-    reduced_.emplace(covisibility());
+    equations_.emplace(covisibility());
   else
-    reduced_.emplace(num_free_);
+    equations_.emplace(num_free_);
 }
 
 template <class Visit>
@@ -109,7 +100,7 @@ void BundleAdjuster::for_each_landmark(const Visit& visit) const {
 std::vector<BundleCamera> BundleAdjuster::cameras_of(const std::vector<Rigid3>& T_map_camera) const {
   std::vector<BundleCamera> cameras;
   cameras.reserve(T_map_camera.size());
-  for (std::size_t i = 0; i < T_map_camera.size(); ++i) cameras.emplace_back(T_map_camera[i], free_index_[i]);
+  for (std::size_t i = 0; i < T_map_camera.size(); ++i) cameras.emplace_back(T_map_camera[i], rows_[i]);
   return cameras;
 }
 
@@ -117,88 +108,59 @@ BlockPattern BundleAdjuster::covisibility() const {
   BlockPattern pattern(num_free_);
   for_each_landmark([&](std::uint32_t, const LandmarkObservations& landmark) {
     for (const BundleObservation* a = landmark.begin; a != landmark.end; ++a) {
-      if (free_index_[a->camera] == kFixedCamera) continue;
+      if (rows_[a->camera] == kFixedPose) continue;
       for (const BundleObservation* b = landmark.begin; b != a; ++b) {
-        if (free_index_[b->camera] != kFixedCamera) pattern.add(free_index_[a->camera], free_index_[b->camera]);
+        if (rows_[b->camera] != kFixedPose) pattern.add(rows_[a->camera], rows_[b->camera]);
       }
     }
   });
-  for (const PoseGraphEdge& link : problem_.links) {
-    const std::uint32_t i = free_index_[link.i], j = free_index_[link.j];
-    if (i != kFixedCamera && j != kFixedCamera) pattern.add(i, j);
-  }
+  for (const PoseTerms* terms : pose_terms_) terms->mark(rows_, &pattern);
   return pattern;
 }
 
 double BundleAdjuster::linearize(const State& state, double damping) {
   const std::vector<BundleCamera> cameras = cameras_of(state.T_map_camera);
-  LandmarkEliminator eliminator(model_, cameras);
-  reduced_->system.set_zero();
-  reduced_->diagonal.assign(num_free_, Vector6d::Zero());
+  LandmarkEliminator eliminator(options_, cameras);
+  equations_->set_zero();
   double cost = 0;
   for_each_landmark([&](std::uint32_t i, const LandmarkObservations& landmark) {
-    cost += eliminator.eliminate(landmark, state.landmarks_m[i], damping, &*reduced_);
+    cost += eliminator.eliminate(landmark, state.landmarks_m[i], damping, &*equations_);
   });
-  for (const PoseGraphEdge& link : problem_.links) cost += add_link(link, state);
+  for (const PoseTerms* terms : pose_terms_) cost = terms->add(state.T_map_camera, rows_, cost, &*equations_);
   return cost;
 }
 
 double BundleAdjuster::cost_of(const State& state) const {
   const std::vector<BundleCamera> cameras = cameras_of(state.T_map_camera);
-  const LandmarkEliminator eliminator(model_, cameras);
+  const LandmarkEliminator eliminator(options_, cameras);
   double cost = 0;
   for_each_landmark(
       [&](std::uint32_t i, const LandmarkObservations& landmark) { cost += eliminator.cost(landmark, state.landmarks_m[i]); });
-  for (const PoseGraphEdge& link : problem_.links) {
-    const EdgeTerm term = edge_term(link, state.T_map_camera[link.i], state.T_map_camera[link.j]);
-    cost += robust_link(term.residual.squaredNorm(), options_.link_kernel_sigmas).cost;
-  }
+  for (const PoseTerms* terms : pose_terms_) cost = terms->add_cost(state.T_map_camera, cost);
   return cost;
-}
-
-/// Adds the link to the system over the cameras; returns its cost.
-double BundleAdjuster::add_link(const PoseGraphEdge& link, const State& state) {
-  const std::uint32_t i = free_index_[link.i], j = free_index_[link.j];
-  const EdgeTerm term = edge_term(link, state.T_map_camera[link.i], state.T_map_camera[link.j]);
-  const RobustLink robust = robust_link(term.residual.squaredNorm(), options_.link_kernel_sigmas);
-  if (robust.weight == 0.0 || link.i == link.j) return robust.cost;
-  const auto add_own = [&](std::uint32_t row, const Matrix6d& J) {
-    if (row == kFixedCamera) return;
-    const Matrix6d H = robust.weight * J.transpose() * J;
-    Eigen::Map<Matrix6d>(reduced_->system.block(row, row)) += H;
-    reduced_->diagonal[row] += H.diagonal();
-    reduced_->system.gradient(row) += robust.weight * J.transpose() * term.residual;
-  };
-  add_own(i, term.J_i);
-  add_own(j, term.J_j);
-  if (i == kFixedCamera || j == kFixedCamera) return robust.cost;
-  const Matrix6d& J_row = i < j ? term.J_i : term.J_j;
-  const Matrix6d& J_column = i < j ? term.J_j : term.J_i;
-  Eigen::Map<Matrix6d>(reduced_->system.block(std::min(i, j), std::max(i, j))) += robust.weight * J_row.transpose() * J_column;
-  return robust.cost;
 }
 
 /// The cameras' steps from the system as it was linearized; a camera that sees nothing keeps its place.
 bool BundleAdjuster::solve(double damping) {
   for (std::uint32_t i = 0; i < num_free_; ++i) {
-    Eigen::Map<Matrix6d> block(reduced_->system.block(i, i));
+    Eigen::Map<Matrix6d> block(equations_->system.block(i, i));
     for (int k = 0; k < 6; ++k) {
-      const double diagonal = reduced_->diagonal[i][k];
+      const double diagonal = equations_->diagonal[i][k];
       block(k, k) += diagonal > 0 ? damping * diagonal : 1.0;
     }
   }
-  return reduced_->system.solve(&camera_steps_);
+  return equations_->system.solve(&camera_steps_);
 }
 
 /// Moves the trial to where the cameras' steps lead; the landmarks follow.
 void BundleAdjuster::step(double damping) {
   trial_ = state_;
-  for (std::size_t i = 0; i < free_index_.size(); ++i) {
-    if (free_index_[i] == kFixedCamera) continue;
-    trial_.T_map_camera[i] = moved_in_camera_axes(state_.T_map_camera[i], camera_steps_[free_index_[i]]);
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (rows_[i] == kFixedPose) continue;
+    trial_.T_map_camera[i] = moved_in_camera_axes(state_.T_map_camera[i], camera_steps_[rows_[i]]);
   }
   const std::vector<BundleCamera> cameras = cameras_of(state_.T_map_camera);
-  const LandmarkEliminator eliminator(model_, cameras);
+  const LandmarkEliminator eliminator(options_, cameras);
   for_each_landmark([&](std::uint32_t i, const LandmarkObservations& landmark) {
     trial_.landmarks_m[i] += eliminator.step(landmark, state_.landmarks_m[i], damping, camera_steps_);
   });
@@ -211,7 +173,7 @@ void BundleAdjuster::place_landmarks_seen_once() {
     const BundleObservation& o = observations[i];
     const bool is_alone = (i == 0 || observations[i - 1].landmark != o.landmark) &&
                           (i + 1 == observations.size() || observations[i + 1].landmark != o.landmark);
-    if (!is_alone || !has_depth(model_, o) || !std::isfinite(o.x) || !std::isfinite(o.y)) continue;
+    if (!is_alone || !DepthTerm::is_measured(options_, o) || !std::isfinite(o.x) || !std::isfinite(o.y)) continue;
     const bool has_prior = std::binary_search(priors_.begin(), priors_.end(), PointPrior{o.landmark, {}, 0}, is_before);
     if (has_prior || !problem_.T_map_camera[o.camera].translation.allFinite()) continue;
     problem_.landmarks_m[o.landmark] = problem_.T_map_camera[o.camera] * (o.depth_m * Eigen::Vector3d(o.x, o.y, 1));
@@ -221,7 +183,7 @@ void BundleAdjuster::place_landmarks_seen_once() {
 BundleReport BundleAdjuster::run(const BundleCallback& on_iteration) {
   BundleReport report;
   report.num_free_cameras = num_free_;
-  report.is_sparse = reduced_->system.is_sparse();
+  report.is_sparse = equations_->system.is_sparse();
   state_ = {std::move(problem_.T_map_camera), std::move(problem_.landmarks_m)};
   double damping = kFirstDamping;
   double cost = linearize(state_, damping);
@@ -265,18 +227,18 @@ BundleReport adjust_bundle(const BundleOptions& options, BundleProblem* problem,
 
 std::vector<BundleResidual> bundle_residuals(const BundleOptions& options, const BundleProblem& problem) {
   constexpr float kBehindCamera_sigmas = 1e9F;
-  const BundleModel model(options);
   std::vector<BundleCamera> cameras;
-  for (const Rigid3& T_map_camera : problem.T_map_camera) cameras.emplace_back(T_map_camera, kFixedCamera);
+  for (const Rigid3& T_map_camera : problem.T_map_camera) cameras.emplace_back(T_map_camera, kFixedPose);
   std::vector<BundleResidual> residuals;
   residuals.reserve(problem.observations.size());
   for (const BundleObservation& o : problem.observations) {
-    const BundleTerms t = bundle_terms(model, o, cameras[o.camera], problem.landmarks_m[o.landmark].data());
-    const double length = std::sqrt(t.du * t.du + t.dv * t.dv) * pixels_to_sigmas(model, o);
+    const SeenLandmark seen(o, cameras[o.camera], problem.landmarks_m[o.landmark].data());
+    const double length = std::sqrt(seen.off) * ReprojectionTerm::pixels_to_sigmas(options, o);
     BundleResidual& residual = residuals.emplace_back();
-    residual.pixel_sigmas = t.p[2] > kMinBundleDepth_m && length < kBehindCamera_sigmas ? static_cast<float>(length) : kBehindCamera_sigmas;
-    if (has_depth(model, o) && std::isfinite(t.p[2])) {
-      residual.depth_sigmas = static_cast<float>((o.depth_m - t.p[2]) / depth_sigma_m(model, o.depth_m));
+    residual.pixel_sigmas =
+        seen.p[2] > SeenLandmark::kMinDepth_m && length < kBehindCamera_sigmas ? static_cast<float>(length) : kBehindCamera_sigmas;
+    if (DepthTerm::is_measured(options, o) && std::isfinite(seen.p[2])) {
+      residual.depth_sigmas = static_cast<float>((o.depth_m - seen.p[2]) / options.depth_noise.sigma_m(o.depth_m));
     }
   }
   return residuals;

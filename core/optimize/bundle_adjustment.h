@@ -8,6 +8,7 @@
 //     sum over observations of  rho_px(|f (x - x_predicted)|^2 / sigma_px^2) + rho_depth((depth - z)^2 / sigma(z)^2)
 //   + sum over point priors of  |p - p_prior|^2 / sigma^2
 //   + sum over links of  rho_link(|pose_error|^2 in the metric of its covariance)
+//   + what further terms on poses add (terms/pose_terms.h)
 // is minimized by Levenberg-Marquardt on the Schur complement (Triggs, McLauchlan, Hartley, Fitzgibbon, "Bundle adjustment -
 // a modern synthesis", 2000): the landmarks are eliminated, what remains is a system over the cameras, dense where they are
 // few and sparse where they are many. The scale of the depth is never free: without an absolute reference a free scale
@@ -18,47 +19,9 @@
 #include <functional>
 #include <vector>
 
-#include "core/geometry/camera.h"
-#include "core/geometry/rigid3.h"
-#include "core/optimize/pose_graph.h"
+#include "core/optimize/bundle_problem.h"
 
 namespace camloc {
-
-/// A landmark as one camera saw it.
-struct BundleObservation {
-  std::uint32_t camera = 0, landmark = 0;
-  float x = 0, y = 0;  ///< normalized image coordinates, undistorted
-  float depth_m = 0;   ///< measured along the optical axis, 0 = none
-  float sigma_px = 1;  ///< standard deviation of the feature position, pixels of level 0
-};
-
-/// A landmark whose position is known, e.g. a surveyed control point.
-struct PointPrior {
-  std::uint32_t landmark = 0;
-  Eigen::Vector3d position_m;  ///< in `map`
-  double sigma_m = 0.01;       ///< per axis
-};
-
-struct BundleProblem {
-  std::vector<Rigid3> T_map_camera;
-  std::vector<std::uint8_t> is_camera_fixed;    ///< as many as cameras
-  std::vector<Eigen::Vector3d> landmarks_m;     ///< in `map`
-  std::vector<BundleObservation> observations;  ///< ordered by landmark
-  std::vector<PointPrior> priors;
-  std::vector<PoseGraphEdge> links;  ///< between two cameras, measured otherwise than by landmarks
-};
-
-struct BundleOptions {
-  double focal_px = 525;
-  DepthNoise depth_noise;
-  bool use_depth = true;              ///< false: reprojection errors only, for comparison
-  double pixel_kernel_sigmas = 2.45;  ///< width of the Huber kernel over |pixel residual| / sigma
-  double depth_kernel_sigmas = 2.0;   ///< and over the depth residual
-  double link_kernel_sigmas = 3.5;    ///< of Cauchy's kernel over the Mahalanobis distance of a link, which has six dimensions
-  int max_iterations = 20;
-  double min_relative_decrease = 1e-5;    ///< of the cost, below which the adjustment has converged
-  std::uint32_t max_dense_cameras = 250;  ///< free cameras up to which the reduced system is dense
-};
 
 struct BundleReport {
   int num_iterations = 0;

@@ -7,8 +7,11 @@
 
 #include <vector>
 
-#include "core/optimize/block_system.h"
-#include "core/optimize/bundle_terms.h"
+#include "core/optimize/bundle_problem.h"
+#include "core/optimize/pose_equations.h"
+#include "core/optimize/terms/depth.h"
+#include "core/optimize/terms/observation.h"
+#include "core/optimize/terms/reprojection.h"
 
 namespace camloc {
 
@@ -20,23 +23,17 @@ struct LandmarkObservations {
   const PointPrior* priors_end;
 };
 
-/// Reduced system of the cameras and what Marquardt's damping needs of it.
-struct ReducedCameras {
-  BlockSystem system;
-  std::vector<Vector6d> diagonal;  ///< of the cameras' own blocks, before the elimination
-
-  explicit ReducedCameras(std::uint32_t num_cameras) : system(num_cameras) {}
-  explicit ReducedCameras(const BlockPattern& pattern) : system(pattern) {}
-};
+/// The terms of every observation, each one a file in terms/.
+using ObservationTerms = TermList<ReprojectionTerm, DepthTerm>;
 
 /// Not thread-safe: holds scratch for the landmark at hand.
 class LandmarkEliminator {
  public:
-  LandmarkEliminator(const BundleModel& model, const std::vector<BundleCamera>& cameras) : model_(model), cameras_(cameras) {}
+  LandmarkEliminator(const BundleOptions& options, const std::vector<BundleCamera>& cameras) : options_(options), cameras_(cameras) {}
 
   /// Adds the landmark at X to the reduced system; returns its cost. With damping > 0 a landmark that its observations leave
   /// free to move along a ray holds no camera.
-  double eliminate(const LandmarkObservations& landmark, const Eigen::Vector3d& X, double damping, ReducedCameras* reduced);
+  double eliminate(const LandmarkObservations& landmark, const Eigen::Vector3d& X, double damping, PoseEquations* reduced);
 
   /// The landmark's own step given those of the cameras; zero where nothing sees it.
   [[nodiscard]] Eigen::Vector3d step(const LandmarkObservations& landmark, const Eigen::Vector3d& X, double damping,
@@ -46,16 +43,16 @@ class LandmarkEliminator {
 
  private:
   struct Entry {
-    std::uint32_t camera;
+    std::uint32_t row;
     Eigen::Matrix<double, 6, 3> E;  ///< block of camera and landmark, later times L^-T
   };
 
-  void add_camera(const BundleTerms& terms, const BundleCamera& camera, ReducedCameras* reduced);
-  Entry* entry_of(std::uint32_t camera);
+  void add_camera(ObservationTerms& terms, const SeenLandmark& seen, PoseEquations* reduced);
+  Entry* entry_of(std::uint32_t row);
 
-  const BundleModel& model_;
+  const BundleOptions& options_;
   const std::vector<BundleCamera>& cameras_;
-  std::vector<Entry> entries_;   ///< by camera
+  std::vector<Entry> entries_;   ///< by row
   std::vector<double*> blocks_;  ///< of one camera with those before it
 };
 

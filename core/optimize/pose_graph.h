@@ -9,22 +9,10 @@
 #include <vector>
 
 #include "core/geometry/rigid3.h"
+#include "core/optimize/terms/pose_prior.h"
+#include "core/optimize/terms/relative_pose.h"
 
 namespace camloc {
-
-/// Pose j as seen from pose i, with the covariance of pose_error() of T_i_j (metres then radians, axes of i).
-struct PoseGraphEdge {
-  std::uint32_t i = 0, j = 0;
-  Rigid3 T_i_j;
-  Matrix6d covariance = Matrix6d::Identity();
-};
-
-/// Where a pose is in the map, e.g. from localization in another map; covariance of pose_error() in the axes of `map`.
-struct PoseGraphPrior {
-  std::uint32_t i = 0;
-  Rigid3 T_map_i;
-  Matrix6d covariance = Matrix6d::Identity();
-};
 
 struct PoseGraph {
   std::vector<Rigid3> T_map_pose;
@@ -34,8 +22,6 @@ struct PoseGraph {
 };
 
 struct PoseGraphOptions {
-  int max_iterations = 30;
-  double min_relative_decrease = 1e-6;
   double kernel_sigmas = 0;  ///< width of the Cauchy kernel over the Mahalanobis distance of edges and priors; 0 = none
 };
 

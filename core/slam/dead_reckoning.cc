@@ -9,6 +9,9 @@ namespace camloc {
 namespace {
 
 constexpr double kMaxLooseness = 20;
+constexpr double kViewRangeM = 6.0;  // how far apart two views of one place may be taken from
+// Where tracking was lost, the camera may have moved this far until the next segment began.
+constexpr double kReachM = 0.5, kReachMS = 1.5;
 constexpr double kLinkM = 0.006, kLinkRad = 0.005;  // what a link of full strength is good for
 
 double looseness_of(std::uint32_t num_shared) { return std::clamp(150.0 / std::max(num_shared, 1U), 1.0, kMaxLooseness); }
@@ -40,13 +43,13 @@ void DeadReckoning::note_bridged(std::uint32_t keyframe) {
 // Grows with the way between the two, and with every weak link on it.
 DeadReckoning::Drift DeadReckoning::drift(std::uint32_t a, std::uint32_t b) const {
   const auto [from, to] = std::minmax(a, b);
-  Drift drift{options_.drift_m, options_.drift_rad};
+  Drift drift{numbers_.loop_drift_m, numbers_.loop_drift_rad};
   double loose = 0;
   for (std::uint32_t k = from + 1; k <= to; ++k) {
     const Rigid3 step = map_->keyframe(k - 1).view.T_map_camera.inverse() * map_->keyframe(k).view.T_map_camera;
     const double walked = step.translation.norm(), turned_rad = rotation_distance_rad(step.rotation, Eigen::Quaterniond::Identity());
-    drift.sigma_m += options_.drift_per_m * walked;
-    drift.sigma_rad += options_.drift_rad_per_m * walked + options_.drift_rad_per_rad * turned_rad;
+    drift.sigma_m += numbers_.loop_drift_per_m * walked;
+    drift.sigma_rad += numbers_.loop_drift_rad_per_m * walked + numbers_.loop_drift_rad_per_rad * turned_rad;
     loose += (looseness_[k] - 1) * (looseness_[k] - 1);
   }
   drift.sigma_m += kLinkM * std::sqrt(loose);
@@ -60,7 +63,7 @@ bool DeadReckoning::may_see(std::uint32_t keyframe, std::uint32_t place) const {
   const Eigen::Vector3d there = map_->keyframe(place).view.T_map_camera.translation;
   if (map_->keyframe(place).segment == map_->keyframe(keyframe).segment) {
     const Drift expected = drift(place, keyframe);
-    return (here - there).norm() <= options_.view_range_m + 3 * expected.sigma_m;
+    return (here - there).norm() <= kViewRangeM + 3 * expected.sigma_m;
   }
   const SegmentBegin* begin = begin_between(place, keyframe);
   if (begin == nullptr) return true;
@@ -69,7 +72,7 @@ bool DeadReckoning::may_see(std::uint32_t keyframe, std::uint32_t place) const {
   const bool is_place_before = map_->keyframe(place).segment == map_->keyframe(begin->keyframe_before).segment;
   const double apart = is_place_before ? (there - T_map_lost.translation).norm() - (here - T_map_found.translation).norm()
                                        : (there - T_map_found.translation).norm() - (here - T_map_lost.translation).norm();
-  return apart <= options_.view_range_m + options_.reach_m + options_.reach_m_s * begin->gap_s;
+  return apart <= kViewRangeM + kReachM + kReachMS * begin->gap_s;
 }
 
 // How the later one of two neighbouring segments began.
@@ -99,7 +102,7 @@ double DeadReckoning::strain(std::uint32_t keyframe, std::uint32_t place, const 
     lost = T_correction * lost;
   else
     found = T_correction * found;
-  return (found - lost).norm() <= options_.reach_m + options_.reach_m_s * begin->gap_s ? 0 : 10;
+  return (found - lost).norm() <= kReachM + kReachMS * begin->gap_s ? 0 : 10;
 }
 
 }  // namespace camloc

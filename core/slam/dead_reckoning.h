@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/slam/loops/loop_options.h"
 #include "core/slam/slam_map.h"
+#include "core/slam/slam_numbers.h"
 
 namespace camloc {
 
@@ -29,7 +29,7 @@ struct SegmentBegin {
 
 class DeadReckoning {
  public:
-  DeadReckoning(const LoopOptions& options, const SlamMap* map) : options_(options), map_(map) {}
+  DeadReckoning(const SlamNumbers& numbers, const SlamMap* map) : numbers_(numbers), map_(map) {}
 
   void begin_segment(const SegmentBegin& begin) { begins_.push_back(begin); }
   /// A keyframe is in the map with all it shares with those before; ascending.
@@ -53,7 +53,7 @@ class DeadReckoning {
   };
   [[nodiscard]] Drift drift(std::uint32_t a, std::uint32_t b) const;
 
-  LoopOptions options_;
+  SlamNumbers numbers_;
   const SlamMap* map_;
   std::vector<SegmentBegin> begins_;
   std::vector<double> looseness_;  ///< of each keyframe's link to those before it; 1 = strong

@@ -18,16 +18,10 @@
 
 namespace camloc {
 
-struct DenseLinkOptions {
-  DenseAlignmentOptions alignment;
-  std::vector<std::uint32_t> steps = {1, 3};            ///< how many keyframes back
-  double prior_sigma_m = 0.05, prior_sigma_rad = 0.05;  ///< of the keyframes' poses relative to each other
-};
-
 /// Not thread-safe. Holds the thumbnails of a few keyframes.
 class DenseLinks {
  public:
-  DenseLinks(const RgbdCamera& camera, const DenseLinkOptions& options) : options_(options), aligner_(camera, options.alignment) {}
+  explicit DenseLinks(const RgbdCamera& camera) : aligner_(camera) {}
 
   /// The keyframe that has just come into the map; returns how many links it got. One without thumbnail gets none.
   int add_keyframe(const SlamMap& map, std::uint32_t keyframe, const ViewThumbnail& thumbnail);
@@ -41,7 +35,6 @@ class DenseLinks {
     std::uint32_t keyframe;
     ViewThumbnail thumbnail;
   };
-  DenseLinkOptions options_;
   DenseAligner aligner_;
   std::deque<Recent> recent_;  ///< the newest at the front
   std::vector<PoseGraphEdge> links_;

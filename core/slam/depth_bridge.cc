@@ -10,7 +10,10 @@
 namespace camloc {
 namespace {
 
-double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
+constexpr double kMaxGapS = 0.25;          // between two views: farther apart, they are no prediction of each other
+constexpr double kMinAnchorOverlap = 0.6;  // below it, the next view is aligned with this one instead of an earlier one
+// How far constant velocity may be off after a time dt: half an acceleration times dt^2, and a little at once.
+constexpr double kAccelerationMS2 = 3.0, kAccelerationRadS2 = 10.0, kJitterM = 0.003, kJitterRad = 0.003;
 
 double worst_sigma(const Eigen::Matrix3d& covariance) {
   return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues().maxCoeff());
@@ -33,16 +36,16 @@ void DepthBridge::forget() {
 std::optional<DepthBridge::Step> DepthBridge::step(std::int64_t stamp_ns, const ViewThumbnail& thumbnail,
                                                    const Rigid3& T_begin_camera_expected) {
   const double dt_s = seconds(stamp_ns - last_ns_);
-  if (anchor_.empty() || thumbnail.empty() || !(dt_s > 0 && dt_s <= options_.max_gap_s) ||
-      seconds(stamp_ns - begin_ns_) > options_.max_length_s) {
+  if (anchor_.empty() || thumbnail.empty() || !(dt_s > 0 && dt_s <= kMaxGapS) ||
+      seconds(stamp_ns - begin_ns_) > numbers_.bridge_max_length_s) {
     forget();
     return std::nullopt;
   }
   // Everything in the axes of the begin. The prediction is as good as the last view and the motion since; of the last view only
   // counts what came after the anchor.
   const Eigen::Quaterniond R_anchor_begin = anchor_step_.T_begin_camera.rotation.conjugate();
-  const Matrix6d motion = diagonal_covariance(options_.jitter_m + 0.5 * options_.acceleration_m_s2 * dt_s * dt_s,
-                                              options_.jitter_rad + 0.5 * options_.acceleration_rad_s2 * dt_s * dt_s);
+  const Matrix6d motion =
+      diagonal_covariance(kJitterM + 0.5 * kAccelerationMS2 * dt_s * dt_s, kJitterRad + 0.5 * kAccelerationRadS2 * dt_s * dt_s);
   const Matrix6d since_anchor = last_.covariance - anchor_step_.covariance + motion;
   const DenseAlignment aligned = aligner_.align(anchor_, thumbnail, anchor_step_.T_begin_camera.inverse() * T_begin_camera_expected,
                                                 rotate_covariance(R_anchor_begin, since_anchor));
@@ -53,15 +56,15 @@ std::optional<DepthBridge::Step> DepthBridge::step(std::int64_t stamp_ns, const 
   Step now;
   now.T_begin_camera = anchor_step_.T_begin_camera * aligned.T_a_b;
   now.covariance = anchor_step_.covariance + rotate_covariance(anchor_step_.T_begin_camera.rotation, aligned.covariance);
-  if (worst_sigma(now.covariance.topLeftCorner<3, 3>()) > options_.max_sigma_m ||
-      worst_sigma(now.covariance.bottomRightCorner<3, 3>()) > options_.max_sigma_rad) {
+  if (worst_sigma(now.covariance.topLeftCorner<3, 3>()) > numbers_.bridge_max_sigma_m ||
+      worst_sigma(now.covariance.bottomRightCorner<3, 3>()) > numbers_.bridge_max_sigma_rad) {
     forget();
     return std::nullopt;
   }
   last_ns_ = stamp_ns;
   last_ = now;
   ++num_steps_;
-  if (aligned.overlap < options_.min_anchor_overlap) {
+  if (aligned.overlap < kMinAnchorOverlap) {
     anchor_ = thumbnail;
     anchor_step_ = now;
   }

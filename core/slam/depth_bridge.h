@@ -11,24 +11,15 @@
 
 #include "core/dense/dense_alignment.h"
 #include "core/dense/thumbnail.h"
+#include "core/slam/slam_map.h"
+#include "core/slam/slam_numbers.h"
 
 namespace camloc {
-
-struct DepthBridgeOptions {
-  DenseAlignmentOptions alignment;
-  double max_gap_s = 0.25;  ///< between two views: farther apart, they are no prediction of each other
-  double max_length_s = 4.0;
-  double max_sigma_m = 0.25, max_sigma_rad = 0.10;  ///< since the last tracked view, in the worst direction
-  double min_anchor_overlap = 0.6;                  ///< below it, the next view is aligned with this one instead of an earlier one
-  // How far constant velocity may be off after a time dt: half an acceleration times dt^2, and a little at once.
-  double acceleration_m_s2 = 3.0, acceleration_rad_s2 = 10.0;
-  double jitter_m = 0.003, jitter_rad = 0.003;
-};
 
 /// Not thread-safe.
 class DepthBridge {
  public:
-  DepthBridge(const RgbdCamera& camera, const DepthBridgeOptions& options) : options_(options), aligner_(camera, options.alignment) {}
+  DepthBridge(const RgbdCamera& camera, const SlamNumbers& numbers) : numbers_(numbers), aligner_(camera) {}
 
   /// A view was tracked by its features: the next bridge begins here. Without a thumbnail there is none.
   void begin_at(std::int64_t stamp_ns, const ViewThumbnail& thumbnail);
@@ -47,7 +38,7 @@ class DepthBridge {
   [[nodiscard]] bool is_open() const { return num_steps_ > 0; }
 
  private:
-  DepthBridgeOptions options_;
+  SlamNumbers numbers_;
   DenseAligner aligner_;
   std::int64_t begin_ns_ = 0, last_ns_ = 0;
   int num_steps_ = 0;

@@ -11,6 +11,13 @@
 namespace camloc {
 namespace {
 
+constexpr std::size_t kNumPartners = 4;        // keyframes compared with
+constexpr std::uint32_t kMaxKeyframeGap = 30;  // only this far back in the recording
+constexpr double kMinBaselineM = 0.25;         // between the two camera centres
+constexpr int kMaxDistanceBits = 50;           // Hamming
+constexpr double kMaxRatio = 0.85;             // of the two nearest distances
+constexpr double kMaxErrorSigmas = 2.5;        // of the reprojection in both views
+
 /// Features that could become a far landmark.
 struct OpenFeatures {
   std::vector<std::uint32_t> index;
@@ -35,39 +42,39 @@ double error_sigmas(const SlamMap& map, const ViewFeatures& view, std::uint32_t 
   return error.norm() * map.camera().color.mean_focal_px() / map.levels().sigma_px(view.features.keypoints[feature].level);
 }
 
-bool is_sound(const FarLandmarkOptions& options, const SlamMap& map, const ViewFeatures& a, std::uint32_t feature_a, const ViewFeatures& b,
+bool is_sound(const SlamNumbers& numbers, const SlamMap& map, const ViewFeatures& a, std::uint32_t feature_a, const ViewFeatures& b,
               std::uint32_t feature_b, const Eigen::Vector3d& p_map) {
   const Eigen::Vector3d to_a = a.T_map_camera.translation - p_map, to_b = b.T_map_camera.translation - p_map;
   const double distance = std::max(to_a.norm(), to_b.norm());
-  if (!(distance < options.max_distance_m) || to_a.cross(to_b).norm() < std::sin(options.min_parallax_rad) * to_a.norm() * to_b.norm())
+  if (!(distance < numbers.far_max_distance_m) ||
+      to_a.cross(to_b).norm() < std::sin(numbers.far_min_parallax_rad) * to_a.norm() * to_b.norm())
     return false;
   // The same corner is seen at a size that fits the two distances.
   const double ratio = to_a.norm() * map.levels().scale(a.features.keypoints[feature_a].level) /
                        (to_b.norm() * map.levels().scale(b.features.keypoints[feature_b].level));
   if (ratio > 1.6 || ratio < 1 / 1.6) return false;
-  return error_sigmas(map, a, feature_a, p_map) <= options.max_error_sigmas &&
-         error_sigmas(map, b, feature_b, p_map) <= options.max_error_sigmas;
+  return error_sigmas(map, a, feature_a, p_map) <= kMaxErrorSigmas && error_sigmas(map, b, feature_b, p_map) <= kMaxErrorSigmas;
 }
 
-std::vector<std::uint32_t> partners(const FarLandmarkOptions& options, std::uint32_t keyframe, const SlamMap& map) {
+std::vector<std::uint32_t> partners(std::uint32_t keyframe, const SlamMap& map) {
   std::vector<std::uint32_t> result;
-  double next_baseline = options.min_baseline_m;
+  double next_baseline = kMinBaselineM;
   const Rigid3& T_map_here = map.keyframe(keyframe).view.T_map_camera;
   const Eigen::Vector3d axis = T_map_here.rotation * Eigen::Vector3d::UnitZ();
-  for (std::uint32_t back = 1; back <= std::min(options.max_keyframe_gap, keyframe); ++back) {
+  for (std::uint32_t back = 1; back <= std::min(kMaxKeyframeGap, keyframe); ++back) {
     const SlamKeyframe& other = map.keyframe(keyframe - back);
     if (other.segment != map.keyframe(keyframe).segment) break;
     const Rigid3& T_map_other = other.view.T_map_camera;
     const double baseline = (T_map_other.translation - T_map_here.translation).norm();
     if (baseline < next_baseline || axis.dot(T_map_other.rotation * Eigen::Vector3d::UnitZ()) < 0.9) continue;
     result.push_back(keyframe - back);
-    if (result.size() == options.num_neighbours) break;
+    if (result.size() == kNumPartners) break;
     next_baseline = 1.8 * baseline;  // near ones for what is near, far ones for what is far
   }
   return result;
 }
 
-int add_with_partner(const FarLandmarkOptions& options, std::uint32_t keyframe, std::uint32_t partner, SlamMap* map) {
+int add_with_partner(const SlamNumbers& numbers, std::uint32_t keyframe, std::uint32_t partner, SlamMap* map) {
   const OpenFeatures here = open_features(map->keyframe(keyframe)), there = open_features(map->keyframe(partner));
   if (here.index.empty() || there.index.empty()) return 0;
   std::vector<NearestDescriptor> nearest(here.index.size()), back(there.index.size());
@@ -76,13 +83,13 @@ int add_with_partner(const FarLandmarkOptions& options, std::uint32_t keyframe, 
   int num_added = 0;
   for (std::uint32_t i = 0; i < here.index.size(); ++i) {
     const NearestDescriptor& n = nearest[i];
-    if (n.distance > options.max_distance_bits || n.distance > options.max_ratio * n.second || back[n.index].index != i) continue;
+    if (n.distance > kMaxDistanceBits || n.distance > kMaxRatio * n.second || back[n.index].index != i) continue;
     const ViewFeatures& a = map->keyframe(keyframe).view;
     const ViewFeatures& b = map->keyframe(partner).view;
     const std::uint32_t feature_a = here.index[i], feature_b = there.index[n.index];
     const auto point =
         triangulate(a.T_map_camera, a.normalized[feature_a].cast<double>(), b.T_map_camera, b.normalized[feature_b].cast<double>());
-    if (!point || !is_sound(options, *map, a, feature_a, b, feature_b, *point)) continue;
+    if (!point || !is_sound(numbers, *map, a, feature_a, b, feature_b, *point)) continue;
     map->add_landmark(*point, {partner, feature_b}, {keyframe, feature_a});
     ++num_added;
   }
@@ -104,9 +111,9 @@ std::optional<Eigen::Vector3d> triangulate(const Rigid3& T_map_a, const Eigen::V
   return 0.5 * (T_map_a.translation + distance_a * direction_a + T_map_b.translation + distance_b * direction_b);
 }
 
-int add_far_landmarks(const FarLandmarkOptions& options, std::uint32_t keyframe, SlamMap* map) {
+int add_far_landmarks(const SlamNumbers& numbers, std::uint32_t keyframe, SlamMap* map) {
   int num_added = 0;
-  for (const std::uint32_t partner : partners(options, keyframe, *map)) num_added += add_with_partner(options, keyframe, partner, map);
+  for (const std::uint32_t partner : partners(keyframe, *map)) num_added += add_with_partner(numbers, keyframe, partner, map);
   return num_added;
 }
 

@@ -9,25 +9,15 @@
 #include <optional>
 
 #include "core/slam/slam_map.h"
+#include "core/slam/slam_numbers.h"
 
 namespace camloc {
-
-struct FarLandmarkOptions {
-  std::size_t num_neighbours = 4;       ///< keyframes compared with
-  std::uint32_t max_keyframe_gap = 30;  ///< only this far back in the recording
-  double min_baseline_m = 0.25;         ///< between the two camera centres
-  double min_parallax_rad = 0.012;      ///< angle under which the point sees them
-  double max_distance_m = 40;
-  int max_distance_bits = 50;  ///< Hamming
-  double max_ratio = 0.85;
-  double max_error_sigmas = 2.5;  ///< of the reprojection in both views
-};
 
 /// The point closest to two rays, in the frame of the poses; nothing where it is behind a camera. Rays are (x/z, y/z, 1).
 [[nodiscard]] std::optional<Eigen::Vector3d> triangulate(const Rigid3& T_map_a, const Eigen::Vector2d& ray_a, const Rigid3& T_map_b,
                                                          const Eigen::Vector2d& ray_b);
 
 /// Adds landmarks that the keyframe and an earlier one of its segment see without depth. Returns how many.
-int add_far_landmarks(const FarLandmarkOptions& options, std::uint32_t keyframe, SlamMap* map);
+int add_far_landmarks(const SlamNumbers& numbers, std::uint32_t keyframe, SlamMap* map);
 
 }  // namespace camloc

@@ -9,6 +9,7 @@
 namespace camloc {
 namespace {
 
+constexpr std::size_t kNumNeighbours = 5;
 constexpr float kFuseRadiusPx = 4;
 constexpr double kMaxDepthSigmas = 3;
 constexpr int kMaxFuseDistance = 50;
@@ -57,11 +58,11 @@ int fuse_into_keyframe(LandmarkSet* landmarks, std::uint32_t keyframe, float rad
   return num_fused;
 }
 
-void fuse_with_neighbours(std::uint32_t keyframe, std::size_t num_neighbours, PoseSolver* solver, SlamMap* map) {
+void fuse_with_neighbours(std::uint32_t keyframe, PoseSolver* solver, SlamMap* map) {
   LandmarkSet own = map->empty_landmark_set();
   map->collect_landmarks(std::array{keyframe}, map->keyframe(keyframe).view.size(), &own);
   const auto neighbours = map->covisible(keyframe, 20);
-  for (std::size_t i = 0; i < std::min(num_neighbours, neighbours.size()); ++i)
+  for (std::size_t i = 0; i < std::min(kNumNeighbours, neighbours.size()); ++i)
     fuse_into_keyframe(&own, neighbours[i].keyframe, kFuseRadiusPx, solver, map);
 }
 

@@ -23,6 +23,6 @@ std::uint32_t insert_keyframe(std::uint64_t frame, std::uint32_t segment, const 
 int fuse_into_keyframe(LandmarkSet* landmarks, std::uint32_t keyframe, float radius_px, PoseSolver* solver, SlamMap* map);
 
 /// Shows the landmarks of a keyframe to its best neighbours.
-void fuse_with_neighbours(std::uint32_t keyframe, std::size_t num_neighbours, PoseSolver* solver, SlamMap* map);
+void fuse_with_neighbours(std::uint32_t keyframe, PoseSolver* solver, SlamMap* map);
 
 }  // namespace camloc

@@ -43,16 +43,16 @@ std::uint64_t remove_outliers(const MapExtract& extract, std::span<const BundleR
 
 }  // namespace
 
-MapFit adjust_locally(const BundleOptions& bundle, const LocalAdjustmentOptions& options, std::uint32_t keyframe, SlamMap* map) {
-  MapExtract extract = extract_window(options, keyframe, *map);
+MapFit adjust_locally(const BundleOptions& bundle, const SlamNumbers& numbers, std::uint32_t keyframe, SlamMap* map) {
+  MapExtract extract = extract_window(numbers, keyframe, *map);
   BundleOptions local = bundle;
-  local.max_iterations = options.max_iterations;
+  local.max_iterations = numbers.window_iterations;
   local.min_relative_decrease = 1e-3;
   adjust_bundle(local, &extract.problem);
   write_back(extract, map);
   const std::vector<BundleResidual> residuals = bundle_residuals(local, extract.problem);
   MapFit fit = measure_fit(local, extract, residuals);
-  fit.num_removed = remove_outliers(extract, residuals, options.max_pixel_sigmas, map);
+  fit.num_removed = remove_outliers(extract, residuals, numbers.window_max_pixel_sigmas, map);
   for (const std::uint32_t index : extract.landmarks) map->summarize(index);
   return fit;
 }

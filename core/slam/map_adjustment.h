@@ -20,7 +20,7 @@ struct MapFit {
 
 /// Adjusts the keyframe, its best neighbours and what they see; other keyframes that see it hold it in place. The first
 /// keyframe of the segment never moves.
-MapFit adjust_locally(const BundleOptions& bundle, const LocalAdjustmentOptions& options, std::uint32_t keyframe, SlamMap* map);
+MapFit adjust_locally(const BundleOptions& bundle, const SlamNumbers& numbers, std::uint32_t keyframe, SlamMap* map);
 
 /// Adjusts all keyframes of a segment twice, without the worst sightings the second time. Control landmarks hold the map where
 /// they were surveyed; with three or more of them the first keyframe moves, too.

@@ -5,12 +5,12 @@
 #include <algorithm>
 
 #include "core/base/order_statistics.h"
-#include "core/optimize/pose_graph_terms.h"
 
 namespace camloc {
 namespace {
 
 constexpr std::uint32_t kAbsent = MapExtract::kAbsent;
+constexpr std::uint32_t kMinShared = 15;  // landmarks that make a keyframe a neighbour
 
 void add_camera(const SlamMap& map, std::uint32_t keyframe, bool is_fixed, MapExtract* extract) {
   extract->camera_of_keyframe[keyframe] = static_cast<std::uint32_t>(extract->keyframes.size());
@@ -68,7 +68,7 @@ void add_links(std::span<const PoseGraphEdge> links, MapExtract* extract) {
     link.i = extract->camera_of_keyframe[link.i];
     link.j = extract->camera_of_keyframe[link.j];
     if (link.i == kAbsent || link.j == kAbsent) continue;
-    chi2.push_back(edge_term(link, problem.T_map_camera[link.i], problem.T_map_camera[link.j]).residual.squaredNorm());
+    chi2.push_back(link.linearize({problem.T_map_camera[link.i], problem.T_map_camera[link.j]}).residual.squaredNorm());
     problem.links.push_back(link);
   }
   if (chi2.empty()) return;
@@ -78,13 +78,13 @@ void add_links(std::span<const PoseGraphEdge> links, MapExtract* extract) {
 
 }  // namespace
 
-MapExtract extract_window(const LocalAdjustmentOptions& options, std::uint32_t keyframe, const SlamMap& map) {
+MapExtract extract_window(const SlamNumbers& numbers, std::uint32_t keyframe, const SlamMap& map) {
   MapExtract extract;
   extract.camera_of_keyframe.assign(map.keyframes().size(), kAbsent);
   const std::uint32_t first = first_of_segment(map, map.keyframe(keyframe).segment);
   add_camera(map, keyframe, keyframe == first, &extract);
-  for (const CovisibleKeyframe& c : map.covisible(keyframe, options.min_shared)) {
-    if (extract.keyframes.size() >= options.num_free_keyframes) break;
+  for (const CovisibleKeyframe& c : map.covisible(keyframe, kMinShared)) {
+    if (extract.keyframes.size() >= numbers.window_free_keyframes) break;
     add_camera(map, c.keyframe, c.keyframe == first, &extract);
   }
   std::vector<std::uint8_t> is_in(map.landmarks().size(), 0);
@@ -104,7 +104,7 @@ MapExtract extract_window(const LocalAdjustmentOptions& options, std::uint32_t k
     if (num_seen[k] > 0 && extract.camera_of_keyframe[k] == kAbsent) outside.push_back(k);
   }
   std::stable_sort(outside.begin(), outside.end(), [&](std::uint32_t a, std::uint32_t b) { return num_seen[a] > num_seen[b]; });
-  if (outside.size() > options.num_fixed_keyframes) outside.resize(options.num_fixed_keyframes);
+  if (outside.size() > numbers.window_fixed_keyframes) outside.resize(numbers.window_fixed_keyframes);
   for (const std::uint32_t k : outside) add_camera(map, k, true, &extract);
   for (const std::uint32_t index : landmarks) add_landmark(map, index, &extract);
   auto& fixed = extract.problem.is_camera_fixed;

@@ -10,16 +10,9 @@
 
 #include "core/optimize/bundle_adjustment.h"
 #include "core/slam/slam_map.h"
+#include "core/slam/slam_numbers.h"
 
 namespace camloc {
-
-struct LocalAdjustmentOptions {
-  std::size_t num_free_keyframes = 8;
-  std::size_t num_fixed_keyframes = 16;
-  std::uint32_t min_shared = 15;  ///< landmarks that make a keyframe a neighbour
-  int max_iterations = 5;
-  double max_pixel_sigmas = 3.0;  ///< sightings farther off afterwards are removed
-};
 
 /// A surveyed point that keyframes see. It is no landmark of the map: nobody finds it by its looks.
 struct ControlLandmark {
@@ -50,7 +43,7 @@ struct MapExtract {
 };
 
 /// The keyframe and its best neighbours, what they see, and fixed, other keyframes that see it.
-[[nodiscard]] MapExtract extract_window(const LocalAdjustmentOptions& options, std::uint32_t keyframe, const SlamMap& map);
+[[nodiscard]] MapExtract extract_window(const SlamNumbers& numbers, std::uint32_t keyframe, const SlamMap& map);
 
 /// All keyframes of a segment, the first one fixed, with what they see and what else is known about them. With three or more
 /// control landmarks none is fixed. Links count as much less as they disagree with the map in their median: their covariances

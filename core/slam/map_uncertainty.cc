@@ -11,6 +11,10 @@
 namespace camloc {
 namespace {
 
+constexpr int kNumSplits = 2;             // of all landmarks and links into two halves
+constexpr std::size_t kMinKeyframes = 4;  // fewer are no map that could bend
+constexpr int kMaxIterations = 12;        // of each adjustment; they begin where the whole map is
+
 /// Which half a landmark or a link goes to.
 struct Split {
   std::uint64_t seed = 0;
@@ -55,13 +59,13 @@ SquaredErrors compare(const std::vector<Rigid3>& a, const std::vector<Rigid3>& b
 
 }  // namespace
 
-MapUncertainty estimate_uncertainty(const MapUncertaintyOptions& options, const BundleOptions& bundle, const MapExtract& extract) {
+MapUncertainty estimate_uncertainty(const BundleOptions& bundle, const MapExtract& extract) {
   const std::size_t num_cameras = extract.problem.T_map_camera.size();
-  if (num_cameras < options.min_keyframes) return {};
+  if (num_cameras < kMinKeyframes) return {};
   BundleOptions adjustment = bundle;
-  adjustment.max_iterations = options.max_iterations;
+  adjustment.max_iterations = kMaxIterations;
   SquaredErrors total;
-  for (int i = 0; i < options.num_splits; ++i) {
+  for (int i = 0; i < kNumSplits; ++i) {
     const Split split{static_cast<std::uint64_t>(i)};
     BundleProblem a = half_of(extract, split, false), b = half_of(extract, split, true);
     adjust_bundle(adjustment, &a);
@@ -71,7 +75,7 @@ MapUncertainty estimate_uncertainty(const MapUncertaintyOptions& options, const 
     total.rad2 += squares.rad2;
   }
   // Half of the evidence has twice the variance, so the difference of two halves has four times that of the whole.
-  const double num_values = 4.0 * 3.0 * static_cast<double>(num_cameras) * options.num_splits;
+  const double num_values = 4.0 * 3.0 * static_cast<double>(num_cameras) * kNumSplits;
   return {std::sqrt(total.m2 / num_values), std::sqrt(total.rad2 / num_values)};
 }
 

@@ -12,12 +12,6 @@
 
 namespace camloc {
 
-struct MapUncertaintyOptions {
-  int num_splits = 2;             ///< of all landmarks and links into two halves
-  std::size_t min_keyframes = 4;  ///< fewer are no map that could bend
-  int max_iterations = 12;        ///< of each adjustment; they begin where the whole map is
-};
-
 /// Standard deviations per axis, of a keyframe; 0 where there is too little to tell from.
 struct MapUncertainty {
   double sigma_m = 0, sigma_rad = 0;
@@ -25,7 +19,6 @@ struct MapUncertainty {
 
 /// `extract` is a whole segment as it was adjusted with the same options. Control landmarks are in both halves: they say where the
 /// map lies, not how it bends. The same extract gives the same bits.
-[[nodiscard]] MapUncertainty estimate_uncertainty(const MapUncertaintyOptions& options, const BundleOptions& bundle,
-                                                  const MapExtract& extract);
+[[nodiscard]] MapUncertainty estimate_uncertainty(const BundleOptions& bundle, const MapExtract& extract);
 
 }  // namespace camloc

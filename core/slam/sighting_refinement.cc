@@ -63,16 +63,15 @@ std::optional<Eigen::Matrix2d> warp(const Seen& reference, const Seen& target) {
   return A_target_reference.inverse();
 }
 
-PatchAlignment align(const PatchAlignmentOptions& options, const Seen& reference, const Seen& target) {
+PatchAlignment align(const Seen& reference, const Seen& target) {
   const std::optional<Eigen::Matrix2d> A_reference_target = warp(reference, target);
   if (!A_reference_target) return {PatchVerdict::kOutside, {}, 0, 0};
-  return align_patch(options, reference.keyframe.view.patches[reference.feature], *A_reference_target,
-                     target.keyframe.view.patches[target.feature]);
+  return align_patch(reference.keyframe.view.patches[reference.feature], *A_reference_target, target.keyframe.view.patches[target.feature]);
 }
 
 }  // namespace
 
-SightingRefinementReport refine_sightings(const PatchAlignmentOptions& options, SlamMap* map) {
+SightingRefinementReport refine_sightings(SlamMap* map) {
   SightingRefinementReport report;
   const UndistortionTable rays(map->camera().color);
   for (std::uint32_t index = 0; index < map->landmarks().size(); ++index) {
@@ -89,7 +88,7 @@ SightingRefinementReport refine_sightings(const PatchAlignmentOptions& options, 
       const Keypoint& found = target.keyframe.view.features.keypoints[sighting.feature];
       Eigen::Vector2f shift_px = Eigen::Vector2f::Zero();
       if (i != chosen) {
-        const PatchAlignment aligned = align(options, reference, target);
+        const PatchAlignment aligned = align(reference, target);
         ++report.num_by_verdict[static_cast<std::size_t>(aligned.verdict)];
         if (aligned.verdict == PatchVerdict::kAligned) shift_px = (target.scale * aligned.shift_px).cast<float>();
       }

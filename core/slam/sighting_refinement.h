@@ -25,6 +25,6 @@ struct SightingRefinementReport {
 /// Moves the image coordinates (ViewFeatures::normalized) of sightings; keypoints stay where they were found, so that doing it
 /// again gives the same. A sighting that cannot be aligned, or whose keyframe has no patches, keeps its place. Poses and
 /// landmarks are only asked how a patch is turned and scaled: a few centimetres off does no harm.
-SightingRefinementReport refine_sightings(const PatchAlignmentOptions& options, SlamMap* map);
+SightingRefinementReport refine_sightings(SlamMap* map);
 
 }  // namespace camloc

@@ -11,9 +11,6 @@
 namespace camloc {
 namespace {
 
-// Both kinds of residuals have longer tails than a normal distribution, and most pixels are better than their standard deviation.
-constexpr double kPixelKernelSigmas = 1.2, kDepthKernelSigmas = 1.3;
-
 // Common landmarks of two views one after the other.
 constexpr std::uint32_t kStrongLink = 150;
 
@@ -31,12 +28,13 @@ std::size_t num_with_depth(const ViewFeatures& view) {
 Slam::Slam(const RgbdCamera& camera, const SlamOptions& options)
     : camera_(camera),
       options_(options),
-      map_(camera, options.scale_factor, options.num_levels),
-      solver_(camera, map_.levels(), mapping_solver_options(options.max_features, options.use_depth_in_tracking)),
-      tracker_(options.tracker, &map_, &solver_),
-      loops_(options.loops, &map_, &solver_),
-      bridge_(camera, options.bridge),
-      links_(camera, options.links) {}
+      map_(camera, options.orb.scale_factor, options.orb.num_levels),
+      solver_(camera, map_.levels(), mapping_solver_options(options.orb.num_features, options.numbers.depth_in_tracking != 0)),
+      tracker_(options.numbers, &map_, &solver_),
+      loops_(options.numbers, &map_, &solver_),
+      bridge_(camera, options.numbers),
+      links_(camera),
+      depth_weight_(options.numbers.depth_share) {}
 
 ViewReport Slam::add_view(std::uint64_t frame, const ViewFeatures& view, const ViewThumbnail& thumbnail) {
   const ViewReport report = place_view(frame, view, thumbnail);
@@ -63,7 +61,7 @@ ViewReport Slam::place_view(std::uint64_t frame, const ViewFeatures& view, const
     bridge_.forget();
     if (num_lost_in_a_row_++ == 0) ++counts_.num_losses;
     tracker_.forget_motion();
-    if (num_lost_in_a_row_ > options_.max_lost_views && begin_segment(frame, view, &report)) {
+    if (num_lost_in_a_row_ > options_.numbers.max_lost_views && begin_segment(frame, view, &report)) {
       begin_bridge(view.stamp_ns, thumbnail);
       return report;
     }
@@ -79,7 +77,7 @@ ViewReport Slam::place_view(std::uint64_t frame, const ViewFeatures& view, const
   if (is_required || tracker_.wants_keyframe(view, found)) {
     add_keyframe(frame, view, found, &report);
   } else {
-    remember(frame, view, found, false);
+    remember(frame, view.stamp_ns, false, seen_in(view, found.inliers));
   }
   begin_bridge(view.stamp_ns, thumbnail);
   return report;
@@ -93,7 +91,7 @@ void Slam::begin_bridge(std::int64_t stamp_ns, const ViewThumbnail& thumbnail) {
 
 // A view full of features that fit nothing is a riddle, no bare wall: only a bridge may lead to one.
 bool Slam::go_on_by_depth(std::uint64_t frame, const ViewFeatures& view, const ViewThumbnail& thumbnail, ViewReport* report) {
-  const bool is_bare = num_with_depth(view) < options_.min_segment_features;
+  const bool is_bare = num_with_depth(view) < options_.numbers.min_segment_features;
   if (!is_bare && !bridge_.is_open()) return false;
   const Rigid3 T_map_begin = map_.keyframe(bridge_begin_.reference).view.T_map_camera * bridge_begin_.T_reference_camera;
   const auto step = bridge_.step(view.stamp_ns, thumbnail, T_map_begin.inverse() * tracker_.predict(view.stamp_ns));
@@ -106,7 +104,7 @@ bool Slam::go_on_by_depth(std::uint64_t frame, const ViewFeatures& view, const V
   const bool is_new_sight = T_last_camera.translation.norm() > kBridgedKeyframeM ||
                             rotation_distance_rad(T_last_camera.rotation, Eigen::Quaterniond::Identity()) > kBridgedKeyframeRad;
   if (is_bare && !is_new_sight) {
-    remember(frame, view, {}, false);
+    remember(frame, view.stamp_ns, false);
     return true;
   }
   const std::uint32_t keyframe = add_bridged_keyframe(frame, view, thumbnail, *step);
@@ -130,21 +128,19 @@ std::uint32_t Slam::add_bridged_keyframe(std::uint64_t frame, ViewFeatures view,
     if (map_.keyframe(last - back).segment == segment) nearby.push_back(last - back);
   }
   LandmarkSet landmarks = map_.empty_landmark_set();
-  map_.collect_landmarks(nearby, options_.tracker.max_local_landmarks, &landmarks);
+  map_.collect_landmarks(nearby, kMaxLocalLandmarks, &landmarks);
   fuse_into_keyframe(&landmarks, keyframe, kBridgedRadiusPx, &solver_, &map_);
   const Matrix6d covariance = rotate_covariance(bridge_begin_.T_reference_camera.rotation, step.covariance);
   loops_.add_link({before, keyframe, T_before_camera, covariance + link_covariance(T_before_camera, kStrongLink)});
   if (links_.add_keyframe(map_, keyframe, thumbnail) == 0) links_.add({before, keyframe, T_before_camera, covariance});
-  remember(frame, view, {}, true);
-  tracked_.back().reference = keyframe;
-  tracked_.back().T_reference_camera = {};
+  tracked_.push_back({frame, view.stamp_ns, keyframe, {}, true, {}});
   return keyframe;
 }
 
 // There are features again, but of nothing that is known: the map goes on from here.
 void Slam::end_bridge(std::uint32_t keyframe, ViewReport* report) {
   tracker_.set_reference(keyframe);
-  if (options_.close_loops) {
+  if (options_.numbers.close_loops != 0) {
     report->loop = loops_.consider(keyframe, places_);
     count(report->loop);
   }
@@ -152,7 +148,7 @@ void Slam::end_bridge(std::uint32_t keyframe, ViewReport* report) {
 }
 
 bool Slam::begin_segment(std::uint64_t frame, ViewFeatures view, ViewReport* report) {
-  if (num_with_depth(view) < options_.min_segment_features) return false;
+  if (num_with_depth(view) < options_.numbers.min_segment_features) return false;
   SegmentBegin begin;
   begin.first_keyframe = static_cast<std::uint32_t>(map_.keyframes().size());
   begin.has_before = !map_.keyframes().empty();
@@ -172,7 +168,7 @@ bool Slam::begin_segment(std::uint64_t frame, ViewFeatures view, ViewReport* rep
   tracker_.set_reference(keyframe);
   tracker_.accept(view.stamp_ns, view.T_map_camera);
   tracker_.forget_motion();
-  remember(frame, view, {}, true);
+  remember(frame, view.stamp_ns, true);
   return true;
 }
 
@@ -180,12 +176,12 @@ void Slam::add_keyframe(std::uint64_t frame, ViewFeatures view, const Registrati
   view.T_map_camera = tracked.T_map_camera;
   report->is_keyframe = true;
   const std::uint32_t keyframe = insert_keyframe(frame, map_.keyframe(tracker_.reference()).segment, view, tracked.inliers, &map_);
-  fuse_with_neighbours(keyframe, options_.num_fused_neighbours, &solver_, &map_);
-  add_far_landmarks(options_.far_landmarks, keyframe, &map_);
+  fuse_with_neighbours(keyframe, &solver_, &map_);
+  add_far_landmarks(options_.numbers, keyframe, &map_);
   tracker_.set_reference(keyframe);
-  remember(frame, view, tracked, true);
+  remember(frame, view.stamp_ns, true);
   adjust_around(keyframe);
-  if (options_.close_loops) {
+  if (options_.numbers.close_loops != 0) {
     report->loop = loops_.consider(keyframe, places_);
     count(report->loop);
     if (report->loop.is_closed) adjust_around(keyframe);
@@ -194,19 +190,19 @@ void Slam::add_keyframe(std::uint64_t frame, ViewFeatures view, const Registrati
   tracker_.refresh();
 }
 
-void Slam::remember(std::uint64_t frame, const ViewFeatures& view, const Registration& tracked, bool is_keyframe) {
-  TrackedView& kept = tracked_.emplace_back();
-  kept.frame = frame;
-  kept.stamp_ns = view.stamp_ns;
-  kept.reference = tracker_.reference();
-  kept.T_reference_camera = tracker_.T_reference_camera();
-  kept.is_keyframe = is_keyframe;
-  if (is_keyframe) return;
-  kept.seen.reserve(tracked.inliers.size());
-  for (const LandmarkObservation& pair : tracked.inliers) {
-    kept.seen.push_back({pair.landmark, view.normalized[pair.feature].x(), view.normalized[pair.feature].y(), view.depth_m[pair.feature],
-                         map_.levels().sigma_px(view.features.keypoints[pair.feature].level)});
+// A view that was tracked, and what it saw.
+void Slam::remember(std::uint64_t frame, std::int64_t stamp_ns, bool is_keyframe, std::vector<TrackedView::Seen> seen) {
+  tracked_.push_back({frame, stamp_ns, tracker_.reference(), tracker_.T_reference_camera(), is_keyframe, std::move(seen)});
+}
+
+std::vector<Slam::TrackedView::Seen> Slam::seen_in(const ViewFeatures& view, const std::vector<LandmarkObservation>& pairs) const {
+  std::vector<TrackedView::Seen> seen;
+  seen.reserve(pairs.size());
+  for (const LandmarkObservation& pair : pairs) {
+    seen.push_back({pair.landmark, view.normalized[pair.feature].x(), view.normalized[pair.feature].y(), view.depth_m[pair.feature],
+                    map_.levels().sigma_px(view.features.keypoints[pair.feature].level)});
   }
+  return seen;
 }
 
 SlamCounts Slam::counts() const {
@@ -217,16 +213,17 @@ SlamCounts Slam::counts() const {
 }
 
 void Slam::adjust_around(std::uint32_t keyframe) {
-  depth_weight_.observe(adjust_locally(bundle_options(), options_.local_adjustment, keyframe, &map_).median_depth_sigmas);
+  depth_weight_.observe(adjust_locally(bundle_options(), options_.numbers, keyframe, &map_).median_depth_sigmas);
 }
 
 BundleOptions Slam::bundle_options() const {
   BundleOptions bundle;
   bundle.focal_px = camera_.color.mean_focal_px();
   bundle.depth_noise = depth_weight_.weighted(camera_.depth_noise);
-  bundle.use_depth = options_.use_depth_in_adjustment;
-  bundle.pixel_kernel_sigmas = kPixelKernelSigmas;
-  bundle.depth_kernel_sigmas = kDepthKernelSigmas;
+  bundle.use_depth = options_.numbers.depth_in_adjustment != 0;
+  bundle.pixel_kernel_sigmas = options_.numbers.pixel_kernel_sigmas;
+  bundle.depth_kernel_sigmas = options_.numbers.depth_kernel_sigmas;
+  bundle.max_dense_cameras = options_.numbers.max_dense_cameras;
   return bundle;
 }
 
@@ -243,7 +240,7 @@ Rigid3 Slam::final_pose(const TrackedView& view) const {
   }
   PoseRefinementOptions refinement;
   refinement.depth_noise = camera_.depth_noise;
-  refinement.use_depth = options_.use_depth_in_tracking;
+  refinement.use_depth = options_.numbers.depth_in_tracking != 0;
   const PoseRefinementResult refined = refine_pose(pairs, T_map_camera, camera_.color.mean_focal_px(), refinement, nullptr);
   const bool is_better = refined.is_converged && refined.num_inliers >= static_cast<int>(view.seen.size()) / 2;
   return is_better ? refined.T_map_camera : T_map_camera;
@@ -252,7 +249,7 @@ Rigid3 Slam::final_pose(const TrackedView& view) const {
 // What was not known yet when a segment was processed may join it now; then its keyframes may find what else they overlap with,
 // and the more of them do, the better the segment is turned into place.
 void Slam::join_leftover_segments() {
-  if (!options_.close_loops || counts_.num_segments == counts_.num_joined + 1) return;
+  if (options_.numbers.close_loops == 0 || counts_.num_segments == counts_.num_joined + 1) return;
   const std::uint32_t main_segment = map_.keyframes().empty() ? 0 : map_.keyframe(0).segment;
   std::vector<std::uint32_t> leftover;
   for (std::uint32_t k = 0; k < map_.keyframes().size(); ++k) {
@@ -274,7 +271,7 @@ void Slam::count(const LoopReport& loop) {
 
 // Pixels are not needed any more afterwards.
 void Slam::refine_all_sightings() {
-  if (options_.refine_sightings) (void)refine_sightings(options_.patches, &map_);
+  if (options_.numbers.refine_sightings != 0) (void)refine_sightings(&map_);
   for (std::uint32_t k = 0; k < map_.keyframes().size(); ++k) map_.keyframe(k).view.patches = {};
 }
 
@@ -282,7 +279,7 @@ void Slam::refine_all_sightings() {
 MapEvidence Slam::evidence(std::uint32_t segment) const {
   MapEvidence evidence;
   if (segment == controlled_segment_) evidence.controls = controls_;
-  if (options_.use_depth_in_adjustment) evidence.links = links_.links();
+  if (options_.numbers.depth_in_adjustment != 0) evidence.links = links_.links();
   return evidence;
 }
 
@@ -293,7 +290,7 @@ SlamResult Slam::finish(const BundleCallback& on_iteration) {
   controls_.clear();
   for (const SlamKeyframe& keyframe : map_.keyframes()) fits_[keyframe.segment];
   for (auto& [segment, fit] : fits_)
-    fit = adjust_globally(bundle_options(), segment, evidence(segment), options_.max_pixel_sigmas, &map_, on_iteration);
+    fit = adjust_globally(bundle_options(), segment, evidence(segment), options_.numbers.final_max_pixel_sigmas, &map_, on_iteration);
   return result();
 }
 
@@ -302,13 +299,14 @@ SlamResult Slam::adjust_to(std::span<const ControlLandmark> controls, const Bund
     const std::uint32_t segment = map_.keyframe(controls.front().seen.front().keyframe).segment;
     controls_.assign(controls.begin(), controls.end());
     controlled_segment_ = segment;
-    fits_[segment] = adjust_globally(bundle_options(), segment, evidence(segment), options_.max_pixel_sigmas, &map_, on_iteration);
+    fits_[segment] =
+        adjust_globally(bundle_options(), segment, evidence(segment), options_.numbers.final_max_pixel_sigmas, &map_, on_iteration);
   }
   return result();
 }
 
 MapUncertainty Slam::uncertainty(std::uint32_t segment) const {
-  return estimate_uncertainty(options_.uncertainty, bundle_options(), extract_segment(segment, evidence(segment), map_));
+  return estimate_uncertainty(bundle_options(), extract_segment(segment, evidence(segment), map_));
 }
 
 std::optional<std::uint32_t> Slam::keyframe_of_frame(std::uint64_t frame) const {

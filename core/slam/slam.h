@@ -14,7 +14,6 @@
 #include <span>
 #include <vector>
 
-#include "core/dense/patch_alignment.h"
 #include "core/dense/thumbnail.h"
 #include "core/registration/view_registration.h"
 #include "core/slam/dense_links.h"
@@ -26,31 +25,15 @@
 #include "core/slam/map_adjustment.h"
 #include "core/slam/map_uncertainty.h"
 #include "core/slam/slam_map.h"
+#include "core/slam/slam_numbers.h"
 #include "core/slam/tracker.h"
 
 namespace camloc {
 
 struct SlamOptions {
-  float scale_factor = 1.2F;  ///< of the features' pyramid
-  int num_levels = 8;
-  int max_features = 1000;
-  bool use_depth_in_tracking = true;  ///< these two are for comparison: depth wins
-  bool use_depth_in_adjustment = true;
-  bool close_loops = true;
-  TrackerOptions tracker;
-  LocalAdjustmentOptions local_adjustment;
-  LoopOptions loops;
-  FarLandmarkOptions far_landmarks;
-  std::size_t num_fused_neighbours = 5;
-  DepthBridgeOptions bridge;
-  DenseLinkOptions links;
-  int max_lost_views = 10;                        ///< after so many in a row a new segment begins
-  std::uint32_t min_segment_features = 200;       ///< features with depth that a view needs to begin one, or to end a bridge
+  OrbOptions orb;  ///< what the features of the views were made with
+  SlamNumbers numbers;
   std::vector<std::uint64_t> required_keyframes;  ///< frames that become keyframes whatever they show, ascending
-  bool refine_sightings = true;                   ///< to a fraction of a pixel before the final adjustment, where views have patches
-  PatchAlignmentOptions patches;
-  MapUncertaintyOptions uncertainty;
-  double max_pixel_sigmas = 2.45;  ///< sightings farther off after the final adjustment are removed
 };
 
 enum class ViewState : std::uint8_t { kTracked, kLost };
@@ -141,7 +124,8 @@ class Slam {
   void join_leftover_segments();
   void refine_all_sightings();
   void count(const LoopReport& loop);
-  void remember(std::uint64_t frame, const ViewFeatures& view, const Registration& tracked, bool is_keyframe);
+  void remember(std::uint64_t frame, std::int64_t stamp_ns, bool is_keyframe, std::vector<TrackedView::Seen> seen = {});
+  [[nodiscard]] std::vector<TrackedView::Seen> seen_in(const ViewFeatures& view, const std::vector<LandmarkObservation>& pairs) const;
   [[nodiscard]] BundleOptions bundle_options() const;
   [[nodiscard]] MapEvidence evidence(std::uint32_t segment) const;
   [[nodiscard]] SlamResult result() const;

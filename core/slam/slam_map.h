@@ -20,6 +20,9 @@ namespace camloc {
 
 inline constexpr std::int32_t kNoLandmark = -1;
 
+/// Of a difference between two stamps.
+[[nodiscard]] constexpr double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
+
 /// Feature of a keyframe that shows a landmark.
 struct Sighting {
   std::uint32_t keyframe = 0, feature = 0;

@@ -10,9 +10,10 @@
 namespace camloc {
 namespace {
 
-constexpr std::size_t kPlacesTried = 5, kKeyframesPerPlace = 6;
-
-double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
+constexpr std::size_t kPlacesTried = 5, kKeyframesPerPlace = 6, kNumLocalKeyframes = 16;
+constexpr double kMinInlierRatio = 0.3;  // of what was found in the search windows
+constexpr double kMaxGapS = 0.5;         // a longer gap between stamps ends the prediction
+constexpr double kMinFoundDepthAgreement = 0.7, kMinFoundSpread = 0.12;
 
 double median_depth_m(const ViewFeatures& view) {
   std::vector<float> depths;
@@ -28,8 +29,8 @@ Rigid3 scaled(const Rigid3& motion, double factor) { return {exp_so3(factor * lo
 
 }  // namespace
 
-Tracker::Tracker(const TrackerOptions& options, SlamMap* map, PoseSolver* solver)
-    : options_(options), map_(map), solver_(solver), local_(map->empty_landmark_set()), place_(map->empty_landmark_set()) {}
+Tracker::Tracker(const SlamNumbers& numbers, SlamMap* map, PoseSolver* solver)
+    : numbers_(numbers), map_(map), solver_(solver), local_(map->empty_landmark_set()), place_(map->empty_landmark_set()) {}
 
 void Tracker::set_reference(std::uint32_t keyframe) {
   const Rigid3 T_map_camera = map_->keyframe(reference_).view.T_map_camera * T_reference_camera_;
@@ -43,7 +44,7 @@ void Tracker::accept(std::int64_t stamp_ns, const Rigid3& T_map_camera) {
   const Rigid3 T_reference_new = T_map_reference.inverse() * T_map_camera;
   const double dt_s = seconds(stamp_ns - last_stamp_ns_);
   velocity_.reset();
-  if (dt_s > 0 && dt_s <= options_.max_gap_s) velocity_ = Velocity{T_reference_camera_.inverse() * T_reference_new, dt_s};
+  if (dt_s > 0 && dt_s <= kMaxGapS) velocity_ = Velocity{T_reference_camera_.inverse() * T_reference_new, dt_s};
   T_reference_camera_ = T_reference_new;
   last_stamp_ns_ = stamp_ns;
 }
@@ -51,21 +52,21 @@ void Tracker::accept(std::int64_t stamp_ns, const Rigid3& T_map_camera) {
 Rigid3 Tracker::predict(std::int64_t stamp_ns) const {
   const Rigid3 T_map_last = map_->keyframe(reference_).view.T_map_camera * T_reference_camera_;
   const double dt_s = seconds(stamp_ns - last_stamp_ns_);
-  if (!velocity_ || dt_s <= 0 || dt_s > options_.max_gap_s) return T_map_last;
+  if (!velocity_ || dt_s <= 0 || dt_s > kMaxGapS) return T_map_last;
   return T_map_last * scaled(velocity_->T_last_next, std::min(dt_s / velocity_->dt_s, 4.0));
 }
 
 void Tracker::update_local_set() {
   if (!is_local_set_stale_) return;
-  map_->collect_landmarks(map_->surroundings(reference_, 10, options_.num_local_keyframes), options_.max_local_landmarks, &local_);
+  map_->collect_landmarks(map_->surroundings(reference_, 10, kNumLocalKeyframes), kMaxLocalLandmarks, &local_);
   is_local_set_stale_ = false;
 }
 
 bool Tracker::is_plausible(const Registration& found, std::int64_t stamp_ns) const {
-  if (!found.is_found || found.num_inliers < options_.min_inliers || found.inlier_ratio() < options_.min_inlier_ratio) return false;
+  if (!found.is_found || found.num_inliers < numbers_.track_min_inliers || found.inlier_ratio() < kMinInlierRatio) return false;
   const Rigid3 T_map_last = map_->keyframe(reference_).view.T_map_camera * T_reference_camera_;
   const double dt_s = std::max(seconds(stamp_ns - last_stamp_ns_), 0.0);
-  return (found.T_map_camera.translation - T_map_last.translation).norm() <= 0.2 + options_.max_speed_m_s * dt_s;
+  return (found.T_map_camera.translation - T_map_last.translation).norm() <= 0.2 + numbers_.track_max_speed_m_s * dt_s;
 }
 
 // A wider search is made where the one before has lost much of what the last view saw: a pattern that repeats (the fins of a
@@ -76,10 +77,10 @@ Registration Tracker::track(const ViewFeatures& view, std::uint64_t seed) {
   Registration best;
   const auto consider = [&](Registration found) {
     if (is_plausible(found, view.stamp_ns) && found.num_inliers > best.num_inliers) best = std::move(found);
-    return best.num_inliers >= options_.min_kept_share * num_last_inliers_ && best.is_found;
+    return best.num_inliers >= numbers_.track_min_kept_share * num_last_inliers_ && best.is_found;
   };
-  (void)(consider(register_near(view, T_predicted, options_.radius_px, seed, &local_, solver_)) ||
-         consider(register_near(view, T_predicted, options_.wide_radius_px, seed, &local_, solver_)) ||
+  (void)(consider(register_near(view, T_predicted, numbers_.track_radius_px, seed, &local_, solver_)) ||
+         consider(register_near(view, T_predicted, numbers_.track_wide_radius_px, seed, &local_, solver_)) ||
          consider(register_anywhere(view, seed, &local_, solver_)));
   if (!best.is_found) return {};
   num_last_inliers_ = best.num_inliers;
@@ -109,14 +110,14 @@ Registration Tracker::find_back(const ViewFeatures& view, const PlaceIndex& plac
   for (const RankedKeyframe& place : places.query(view.features.descriptors, 4 * kPlacesTried)) {
     if (map_->keyframe(place.keyframe).segment != segment) continue;
     if (num_tried++ == kPlacesTried) break;
-    map_->collect_landmarks(map_->surroundings(place.keyframe, 15, kKeyframesPerPlace), options_.max_local_landmarks, &place_);
+    map_->collect_landmarks(map_->surroundings(place.keyframe, 15, kKeyframesPerPlace), kMaxLocalLandmarks, &place_);
     const Registration found = register_anywhere(view, seed, &place_, solver_);
     if (!is_plausible(found, view.stamp_ns) || found.num_inliers <= best.num_inliers) continue;
     best = found;
     best_keyframe = place.keyframe;
   }
-  const bool is_sure = best.is_found && best.num_inliers >= options_.min_found_inliers && best.spread >= options_.min_spread &&
-                       best.depth_agreement >= options_.min_depth_agreement;
+  const bool is_sure = best.is_found && best.num_inliers >= numbers_.found_min_inliers && best.spread >= kMinFoundSpread &&
+                       best.depth_agreement >= kMinFoundDepthAgreement;
   if (!is_sure) return {};
   num_last_inliers_ = best.num_inliers;
   set_reference(best_keyframe);
@@ -128,11 +129,11 @@ Registration Tracker::find_back(const ViewFeatures& view, const PlaceIndex& plac
 bool Tracker::wants_keyframe(const ViewFeatures& view, const Registration& tracked) const {
   const SlamKeyframe& reference = map_->keyframe(reference_);
   const Rigid3 T_reference_camera = reference.view.T_map_camera.inverse() * tracked.T_map_camera;
-  if (T_reference_camera.translation.norm() > options_.keyframe_distance * median_depth_m(view)) return true;
-  if (rotation_distance_rad(T_reference_camera.rotation, Eigen::Quaterniond::Identity()) > options_.keyframe_angle_rad) return true;
+  if (T_reference_camera.translation.norm() > numbers_.keyframe_distance * median_depth_m(view)) return true;
+  if (rotation_distance_rad(T_reference_camera.rotation, Eigen::Quaterniond::Identity()) > numbers_.keyframe_angle_rad) return true;
   const double share = static_cast<double>(tracked.num_inliers) / std::max<double>(1, static_cast<double>(view.size()));
   const double share_then = static_cast<double>(reference.num_landmarks) / std::max<double>(1, static_cast<double>(reference.view.size()));
-  return tracked.num_inliers < options_.keyframe_inliers || share < options_.keyframe_share * share_then;
+  return tracked.num_inliers < numbers_.keyframe_inliers || share < numbers_.keyframe_share * share_then;
 }
 
 }  // namespace camloc

@@ -13,32 +13,16 @@
 #include "core/registration/view_registration.h"
 #include "core/slam/loops/place_index.h"
 #include "core/slam/slam_map.h"
+#include "core/slam/slam_numbers.h"
 
 namespace camloc {
 
-struct TrackerOptions {
-  std::size_t num_local_keyframes = 16;
-  std::size_t max_local_landmarks = 4000;
-  float radius_px = 14, wide_radius_px = 40;  ///< search windows around the prediction
-  std::uint32_t min_inliers = 30;
-  double min_inlier_ratio = 0.3;
-  double min_kept_share = 0.5;  ///< of the last view's inliers; with fewer, wider searches are tried, too
-  double max_speed_m_s = 4.0;   ///< a pose that asks for more is refused
-  double max_gap_s = 0.5;       ///< a longer gap between stamps ends the prediction
-  // Finding back after a loss asks for more than going on.
-  std::uint32_t min_found_inliers = 45;
-  double min_depth_agreement = 0.7, min_spread = 0.12;
-  // A keyframe every so often:
-  double keyframe_distance = 0.10;  ///< from the reference keyframe, as a share of the median depth
-  double keyframe_angle_rad = 0.21;
-  double keyframe_share = 0.45;          ///< or when the share of features that show landmarks falls below that of the
-                                         ///< reference keyframe times this
-  std::uint32_t keyframe_inliers = 120;  ///< or below this many
-};
+/// Landmarks that are looked for around a keyframe, at most.
+inline constexpr std::size_t kMaxLocalLandmarks = 4000;
 
 class Tracker {
  public:
-  Tracker(const TrackerOptions& options, SlamMap* map, PoseSolver* solver);
+  Tracker(const SlamNumbers& numbers, SlamMap* map, PoseSolver* solver);
 
   /// Pose of the view near the last one, or not found. Adapts the reference keyframe.
   [[nodiscard]] Registration track(const ViewFeatures& view, std::uint64_t seed);
@@ -69,7 +53,7 @@ class Tracker {
   [[nodiscard]] bool is_plausible(const Registration& found, std::int64_t stamp_ns) const;
   [[nodiscard]] std::uint32_t best_reference(const Registration& tracked) const;
 
-  TrackerOptions options_;
+  SlamNumbers numbers_;
   SlamMap* map_;
   PoseSolver* solver_;
   LandmarkSet local_, place_;

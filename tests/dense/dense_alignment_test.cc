@@ -22,7 +22,7 @@ struct AlignedScenery {
   testing::World world;
   testing::Viewer viewer{world};
   BoxRenderer renderer{viewer.camera(), kLow, kHigh};
-  DenseAligner aligner{viewer.camera(), {}};
+  DenseAligner aligner{viewer.camera()};
 
   /// Error of the motion between two true poses, given a prediction that is off by `change` in the axes of the second.
   Vector6d error(const Rigid3& T_world_a, const Rigid3& T_world_b, const Vector6d& change, DenseAlignment* found) {

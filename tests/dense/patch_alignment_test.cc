@@ -46,7 +46,7 @@ TEST(PatchAlignment, FindsAFractionOfAPixel) {
     const Eigen::Vector2d expected(shift(rng), shift(rng));
     const FeaturePatch reference = draw(texture, Eigen::Matrix2d::Identity(), {0, 0});
     const FeaturePatch target = draw(texture, A, expected, contrast(rng), brightness(rng));
-    const PatchAlignment found = align_patch({}, reference, A, target);
+    const PatchAlignment found = align_patch(reference, A, target);
     if (found.verdict != PatchVerdict::kAligned) continue;
     ++num_aligned;
     const double error_px = (found.shift_px - expected).norm();
@@ -63,7 +63,7 @@ TEST(PatchAlignment, RefusesAnotherTexture) {
   for (std::uint64_t i = 0; i < 200; ++i) {
     const FeaturePatch reference = draw(Texture(i), Eigen::Matrix2d::Identity(), {0, 0});
     const FeaturePatch target = draw(Texture(i + 1000), Eigen::Matrix2d::Identity(), {0, 0});
-    num_aligned += align_patch({}, reference, Eigen::Matrix2d::Identity(), target).verdict == PatchVerdict::kAligned ? 1 : 0;
+    num_aligned += align_patch(reference, Eigen::Matrix2d::Identity(), target).verdict == PatchVerdict::kAligned ? 1 : 0;
   }
   EXPECT_LE(num_aligned, 4);
 }
@@ -72,7 +72,7 @@ TEST(PatchAlignment, RefusesWhatIsTooFarAway) {
   for (std::uint64_t i = 0; i < 50; ++i) {
     const FeaturePatch reference = draw(Texture(i), Eigen::Matrix2d::Identity(), {0, 0});
     const FeaturePatch target = draw(Texture(i), Eigen::Matrix2d::Identity(), {3.2, -2.0});
-    const PatchAlignment found = align_patch({}, reference, Eigen::Matrix2d::Identity(), target);
+    const PatchAlignment found = align_patch(reference, Eigen::Matrix2d::Identity(), target);
     EXPECT_FALSE(found.verdict == PatchVerdict::kAligned && found.correlation > 0.95) << i;
   }
 }
@@ -83,14 +83,14 @@ TEST(PatchAlignment, RefusesBareWallsAndEdges) {
     bare.pixels[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(100 + i % 2);
     edge.pixels[static_cast<std::size_t>(i)] = i % FeaturePatch::kSide < FeaturePatch::kHalf ? 40 : 200;
   }
-  EXPECT_EQ(align_patch({}, bare, Eigen::Matrix2d::Identity(), bare).verdict, PatchVerdict::kFlat);
-  EXPECT_EQ(align_patch({}, edge, Eigen::Matrix2d::Identity(), edge).verdict, PatchVerdict::kFlat);
+  EXPECT_EQ(align_patch(bare, Eigen::Matrix2d::Identity(), bare).verdict, PatchVerdict::kFlat);
+  EXPECT_EQ(align_patch(edge, Eigen::Matrix2d::Identity(), edge).verdict, PatchVerdict::kFlat);
 }
 
 TEST(PatchAlignment, RefusesAWarpThatLeavesTheReference) {
   const FeaturePatch patch = draw(Texture(1), Eigen::Matrix2d::Identity(), {0, 0});
-  EXPECT_EQ(align_patch({}, patch, turned_and_scaled(0, 2.0), patch).verdict, PatchVerdict::kOutside);
-  EXPECT_EQ(align_patch({}, patch, Eigen::Matrix2d::Constant(std::nan("")), patch).verdict, PatchVerdict::kOutside);
+  EXPECT_EQ(align_patch(patch, turned_and_scaled(0, 2.0), patch).verdict, PatchVerdict::kOutside);
+  EXPECT_EQ(align_patch(patch, Eigen::Matrix2d::Constant(std::nan("")), patch).verdict, PatchVerdict::kOutside);
 }
 
 TEST(PatchAlignment, SigmaGrowsWithTheNoise) {
@@ -99,8 +99,8 @@ TEST(PatchAlignment, SigmaGrowsWithTheNoise) {
   const FeaturePatch clean = draw(Texture(2), Eigen::Matrix2d::Identity(), {0, 0});
   FeaturePatch noisy = clean;
   for (std::uint8_t& grey : noisy.pixels) grey = static_cast<std::uint8_t>(std::clamp(grey + noise(rng), 0.0, 255.0));
-  const double before = align_patch({}, clean, Eigen::Matrix2d::Identity(), clean).sigma_px;
-  const double after = align_patch({}, clean, Eigen::Matrix2d::Identity(), noisy).sigma_px;
+  const double before = align_patch(clean, Eigen::Matrix2d::Identity(), clean).sigma_px;
+  const double after = align_patch(clean, Eigen::Matrix2d::Identity(), noisy).sigma_px;
   EXPECT_GT(before, 0);
   EXPECT_GT(after, 2 * before);
 }

@@ -26,7 +26,7 @@ inline RgbdCamera room_camera() { return sample_camera(kRoomWidth, kRoomHeight);
 /// What there is to find in images of this size.
 inline SlamOptions room_options() {
   SlamOptions options;
-  options.min_segment_features = 100;
+  options.numbers.min_segment_features = 100;
   return options;
 }
 

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "tests/optimize/generated_bundle.h"
@@ -188,6 +189,42 @@ TEST(BundleAdjustment, LandmarksSeenOnceFollowTheirCamera) {
   EXPECT_LT((alone.landmarks_m[num_landmarks] - seen).norm(), 1e-12);
   EXPECT_EQ(alone.landmarks_m[num_landmarks + 1], Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(alone.landmarks_m[num_landmarks + 2], Eigen::Vector3d(1, 2, 3));
+}
+
+// It is where the surveyor says; what a single depth says of it would be off by 2 m.
+TEST(BundleAdjustment, ASurveyedPointIsNotMovedByASingleDepth) {
+  std::mt19937 rng(9);
+  BundleWorld world = make_bundle_world(rng, {});
+  const auto surveyed = static_cast<std::uint32_t>(world.start.landmarks_m.size());
+  const Eigen::Vector3d position_m = world.truth.T_map_camera[0] * Eigen::Vector3d(0.1, -0.2, 4.0);
+  world.start.landmarks_m.push_back(position_m);
+  world.start.observations.push_back({0, surveyed, 0.025F, -0.05F, 2.0F, 1.0F});
+  world.start.priors.push_back({surveyed, position_m, 0.005});
+  adjust_bundle(world.options, &world.start);
+  EXPECT_LT((world.start.landmarks_m[surveyed] - position_m).norm(), 0.01);
+}
+
+// Levenberg-Marquardt goes on after a step that made it worse: from starts so bad that there are some.
+TEST(BundleAdjustment, AStepThatFailsIsTriedShorter) {
+  int num_recovered = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    std::mt19937 rng(seed);
+    BundleWorldOptions o;
+    o.num_cameras = 6;
+    o.num_landmarks = 200;
+    o.position_error_m = o.landmark_error_m = 1.0;
+    o.rotation_error_rad = 0.5;
+    BundleWorld world = make_bundle_world(rng, o);
+    world.options.max_iterations = 60;
+    std::vector<double> costs;
+    adjust_bundle(world.options, &world.start, [&](int, double cost) {
+      costs.push_back(cost);
+      return true;
+    });
+    const auto failed = std::adjacent_find(costs.begin(), costs.end());
+    if (failed != costs.end() && costs.back() < *failed) ++num_recovered;
+  }
+  EXPECT_GE(num_recovered, 2);
 }
 
 TEST(BundleAdjustment, OneLandmarkTwiceInAnImageCountsTwice) {

@@ -23,7 +23,7 @@ struct KeyframesInARoom {
   testing::Viewer viewer{world};
   BoxRenderer renderer{viewer.camera(), {-3, -2.5, 0}, {3, 2.5, 2.8}};
   SlamMap map{viewer.camera(), 1.2F, 8};
-  DenseLinks links{viewer.camera(), {}};
+  DenseLinks links{viewer.camera()};
   std::vector<Rigid3> T_world_camera;
 
   /// A keyframe that is `off_m` from where it should be, in its segment.

@@ -82,9 +82,9 @@ TEST(DepthBridge, KnowsLessWithoutTexture) {
 
 TEST(DepthBridge, EndsWhenTooLittleIsKnown) {
   Scenery scenery;
-  DepthBridgeOptions options;
-  options.max_sigma_m = 0.008;
-  scenery.bridge = DepthBridge(scenery.viewer.camera(), options);
+  SlamNumbers numbers;
+  numbers.bridge_max_sigma_m = 0.008;
+  scenery.bridge = DepthBridge(scenery.viewer.camera(), numbers);
   scenery.renderer.contrast = 0;
   scenery.begin();
   int frame = 1;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/slam/slam_numbers.h"
+
 namespace camloc {
 namespace {
 
@@ -11,7 +13,7 @@ constexpr double kMedianOfNormal = 0.6745;
 
 /// Windows of a camera whose depth scatters by this much, adjusted with what the weight says at the time.
 double quadratic_after(int num_windows, double quadratic_of_file, double quadratic_of_scatter) {
-  DepthWeight weight;
+  DepthWeight weight(SlamNumbers{}.depth_share);
   const DepthNoise file{0, quadratic_of_file};
   for (int i = 0; i < num_windows; ++i) { weight.observe(kMedianOfNormal * quadratic_of_scatter / weight.weighted(file).quadratic_per_m); }
   return weight.weighted(file).quadratic_per_m;
@@ -27,7 +29,7 @@ TEST(DepthWeight, WhatIsObservedCountsNotWhatTheFileSays) {
 TEST(DepthWeight, FollowsTheScatter) { EXPECT_NEAR(quadratic_after(100, 0.006, 0.003) / quadratic_after(100, 0.006, 0.0015), 2, 0.05); }
 
 TEST(DepthWeight, StaysWithinWhatTheFileMakesPlausible) {
-  DepthWeight fresh;
+  DepthWeight fresh(SlamNumbers{}.depth_share);
   const DepthNoise file{0.001, 0.006};
   EXPECT_LT(fresh.weighted(file).sigma_m(2), file.sigma_m(2));
   EXPECT_LE(quadratic_after(100, 0.006, 1.0), 0.006);
@@ -35,7 +37,7 @@ TEST(DepthWeight, StaysWithinWhatTheFileMakesPlausible) {
 }
 
 TEST(DepthWeight, AWindowWithoutDepthSaysNothing) {
-  DepthWeight weight;
+  DepthWeight weight(SlamNumbers{}.depth_share);
   const DepthNoise file{0.001, 0.006};
   const double before = weight.weighted(file).sigma_m(2);
   weight.observe(0);

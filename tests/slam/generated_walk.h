@@ -263,8 +263,8 @@ inline Walk walk_through(Viewer* viewer, const std::vector<Rigid3>& T_world_came
 
 inline SlamOptions walk_options() {
   SlamOptions options;
-  options.max_features = 600;
-  options.min_segment_features = 100;
+  options.orb.num_features = 600;
+  options.numbers.min_segment_features = 100;
   return options;
 }
 

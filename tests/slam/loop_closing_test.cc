@@ -31,12 +31,13 @@ struct RingRun {
 };
 
 /// Once around the ring and a bit more. On the second side the depth camera measures too far, at worst by that factor.
-RingRun walk_ring(bool close_loops, double depth_scale) {
+RingRun walk_ring(bool close_loops, double depth_scale, double max_chi2 = SlamNumbers{}.loop_max_chi2) {
   const World world = testing::make_ring(11, kSideM);
   Viewer viewer(world);
   viewer.options().rate_hz = 8;
   SlamOptions options = walk_options();
-  options.close_loops = close_loops;
+  options.numbers.close_loops = close_loops ? 1 : 0;
+  options.numbers.loop_max_chi2 = max_chi2;
   Slam slam(viewer.camera(), options);
   const auto poses = along_ring(kSideM, 1.5, 4 * kSideM + 4.5, 0.15);
   const Walk walk = walk_through(&viewer, poses, &slam, [&](std::uint64_t frame, ViewFeatures* view) {
@@ -83,6 +84,16 @@ TEST(LoopClosing, ADriftedLoopIsClosedAndTheErrorSpreads) {
   for (const CovisibleKeyframe& c : closed.map.covisible(num_keyframes - 1, 1))
     num_common += c.keyframe < num_keyframes / 4 ? c.num_shared : 0;
   EXPECT_GE(num_common, 60U);
+}
+
+// Links that must not be stretched make of the true loop one that is refused: nothing may have moved then.
+TEST(LoopClosing, ALoopThatStretchesTheGraphTooFarIsRefusedAndMovesNothing) {
+  const RingRun refused = walk_ring(true, 1.05, 1e-6), none = walk_ring(false, 1.05);
+  EXPECT_EQ(refused.counts.num_loops, 0U);
+  EXPECT_GE(refused.counts.num_loops_refused, 1U);
+  ASSERT_EQ(refused.result.poses.size(), none.result.poses.size());
+  for (std::size_t i = 0; i < none.result.poses.size(); ++i)
+    ASSERT_EQ(refused.result.poses[i].T_map_camera.translation, none.result.poses[i].T_map_camera.translation) << "view " << i;
 }
 
 TEST(LoopClosing, ALoopWithoutDriftIsClosedToo) {

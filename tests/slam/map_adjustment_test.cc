@@ -67,11 +67,11 @@ TEST(MapAdjustment, LocalAdjustmentKeepsTheFirstKeyframeAndMendsTheOthers) {
 // Also where keyframes outside the window would hold it.
 TEST(MapAdjustment, TheFirstKeyframeOfTheSegmentNeverMoves) {
   Disturbed d;
-  LocalAdjustmentOptions options;
-  options.num_free_keyframes = 3;
+  SlamNumbers numbers;
+  numbers.window_free_keyframes = 3;
   const Rigid3 first = d.map.keyframe(0).view.T_map_camera, second = d.map.keyframe(1).view.T_map_camera;
-  adjust_locally(bundle_for(d.viewer.camera()), options, 0, &d.map);
-  adjust_locally(bundle_for(d.viewer.camera()), options, 1, &d.map);
+  adjust_locally(bundle_for(d.viewer.camera()), numbers, 0, &d.map);
+  adjust_locally(bundle_for(d.viewer.camera()), numbers, 1, &d.map);
   EXPECT_EQ(d.map.keyframe(0).view.T_map_camera.translation, first.translation);
   EXPECT_EQ(d.map.keyframe(0).view.T_map_camera.rotation.coeffs(), first.rotation.coeffs());
   EXPECT_NE(d.map.keyframe(1).view.T_map_camera.translation, second.translation);
@@ -79,11 +79,11 @@ TEST(MapAdjustment, TheFirstKeyframeOfTheSegmentNeverMoves) {
 
 TEST(MapAdjustment, KeyframesOutsideTheWindowStay) {
   Disturbed d;
-  LocalAdjustmentOptions options;
-  options.num_free_keyframes = 2;
+  SlamNumbers numbers;
+  numbers.window_free_keyframes = 2;
   std::vector<Rigid3> before;
   for (const SlamKeyframe& k : d.map.keyframes()) before.push_back(k.view.T_map_camera);
-  adjust_locally(bundle_for(d.viewer.camera()), options, 5, &d.map);
+  adjust_locally(bundle_for(d.viewer.camera()), numbers, 5, &d.map);
   int num_moved = 0;
   for (std::uint32_t k = 0; k < 6; ++k) num_moved += d.map.keyframe(k).view.T_map_camera.translation == before[k].translation ? 0 : 1;
   EXPECT_GE(num_moved, 1);

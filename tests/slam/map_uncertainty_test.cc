@@ -59,7 +59,7 @@ Compared compare(const BundleWorldOptions& options, int num_worlds) {
     std::mt19937 rng(static_cast<unsigned>(seed));
     const BundleWorld world = make_bundle_world(rng, options);
     const Adjusted adjusted = adjust(world);
-    const MapUncertainty estimate = estimate_uncertainty({}, world.options, adjusted.extract);
+    const MapUncertainty estimate = estimate_uncertainty(world.options, adjusted.extract);
     estimate_m2 += estimate.sigma_m * estimate.sigma_m;
     estimate_rad2 += estimate.sigma_rad * estimate.sigma_rad;
     truth_m2 += adjusted.truth.sigma_m * adjusted.truth.sigma_m;
@@ -92,7 +92,7 @@ TEST(MapUncertainty, DoesNotTrustTheSigmas) {
     BundleWorld world = make_bundle_world(rng, options);
     for (BundleObservation& o : world.start.observations) o.sigma_px = 1;
     const Adjusted adjusted = adjust(world);
-    const double sigma_m = estimate_uncertainty({}, world.options, adjusted.extract).sigma_m;
+    const double sigma_m = estimate_uncertainty(world.options, adjusted.extract).sigma_m;
     estimate_m2 += sigma_m * sigma_m;
     truth_m2 += adjusted.truth.sigma_m * adjusted.truth.sigma_m;
   }
@@ -103,7 +103,7 @@ TEST(MapUncertainty, DoesNotTrustTheSigmas) {
 TEST(MapUncertainty, SurveyedPointsHoldAMap) {
   std::mt19937 rng(4);
   BundleWorld world = make_bundle_world(rng, corridor());
-  const double free_m = estimate_uncertainty({}, world.options, adjust(world).extract).sigma_m;
+  const double free_m = estimate_uncertainty(world.options, adjust(world).extract).sigma_m;
   // The last landmarks are control points, as extract_segment puts them.
   constexpr std::size_t kStep = 20;
   MapExtract held = adjust(world).extract;
@@ -123,14 +123,14 @@ TEST(MapUncertainty, SurveyedPointsHoldAMap) {
                    [](const auto& a, const auto& b) { return a.landmark < b.landmark; });
   held.landmarks.resize(positions.size() - held.problem.priors.size());
   adjust_bundle(world.options, &held.problem);
-  EXPECT_LT(estimate_uncertainty({}, world.options, held).sigma_m, 0.7 * free_m);
+  EXPECT_LT(estimate_uncertainty(world.options, held).sigma_m, 0.7 * free_m);
 }
 
 // It may be off by much in a half, but that says little about the map.
 TEST(MapUncertainty, AViewOfNextToNothingDoesNotDecide) {
   std::mt19937 rng(5);
   BundleWorld world = make_bundle_world(rng, room());
-  const double before_m = estimate_uncertainty({}, world.options, adjust(world).extract).sigma_m;
+  const double before_m = estimate_uncertainty(world.options, adjust(world).extract).sigma_m;
   std::vector<BundleObservation> kept;
   std::uint32_t num_of_blind = 0;
   for (const BundleObservation& o : world.start.observations) {
@@ -141,7 +141,7 @@ TEST(MapUncertainty, AViewOfNextToNothingDoesNotDecide) {
   }
   world.start.observations = kept;
   const Adjusted adjusted = adjust(world);
-  EXPECT_LT(estimate_uncertainty({}, world.options, adjusted.extract).sigma_m, 1.3 * before_m);
+  EXPECT_LT(estimate_uncertainty(world.options, adjusted.extract).sigma_m, 1.3 * before_m);
 }
 
 TEST(MapUncertainty, ExactMeasurementsLeaveNone) {
@@ -153,7 +153,7 @@ TEST(MapUncertainty, ExactMeasurementsLeaveNone) {
     const Eigen::Vector3d p = world.truth.T_map_camera[o.camera].inverse() * world.truth.landmarks_m[o.landmark];
     o.depth_m = static_cast<float>(p.z());
   }
-  const MapUncertainty none = estimate_uncertainty({}, world.options, adjust(world).extract);
+  const MapUncertainty none = estimate_uncertainty(world.options, adjust(world).extract);
   EXPECT_LT(none.sigma_m, 1e-4);
   EXPECT_LT(none.sigma_rad, 1e-4);
 }
@@ -163,7 +163,7 @@ TEST(MapUncertainty, AHandfulOfViewsSaysNothing) {
   BundleWorldOptions options = room();
   options.num_cameras = 3;
   const BundleWorld world = make_bundle_world(rng, options);
-  const MapUncertainty unknown = estimate_uncertainty({}, world.options, adjust(world).extract);
+  const MapUncertainty unknown = estimate_uncertainty(world.options, adjust(world).extract);
   EXPECT_EQ(unknown.sigma_m, 0);
   EXPECT_EQ(unknown.sigma_rad, 0);
 }
@@ -172,7 +172,7 @@ TEST(MapUncertainty, SameMapSameBits) {
   std::mt19937 rng(2);
   const BundleWorld world = make_bundle_world(rng, room());
   const MapExtract extract = adjust(world).extract;
-  const MapUncertainty a = estimate_uncertainty({}, world.options, extract), b = estimate_uncertainty({}, world.options, extract);
+  const MapUncertainty a = estimate_uncertainty(world.options, extract), b = estimate_uncertainty(world.options, extract);
   EXPECT_EQ(a.sigma_m, b.sigma_m);
   EXPECT_EQ(a.sigma_rad, b.sigma_rad);
   EXPECT_GT(a.sigma_m, 0);

@@ -128,7 +128,7 @@ struct Scene {
 TEST(SightingRefinement, SightingsBecomeOnePoint) {
   Scene scene;
   const double before = spread_px(scene.map, scene.T_map_camera_true);
-  const SightingRefinementReport report = refine_sightings({}, &scene.map);
+  const SightingRefinementReport report = refine_sightings(&scene.map);
   const double after = spread_px(scene.map, scene.T_map_camera_true);
   EXPECT_EQ(report.num_references, 150U);
   EXPECT_GT(report.num_refined(), 350U);  // of 450
@@ -138,9 +138,9 @@ TEST(SightingRefinement, SightingsBecomeOnePoint) {
 
 TEST(SightingRefinement, DoingItAgainChangesNothing) {
   Scene scene;
-  (void)refine_sightings({}, &scene.map);
+  (void)refine_sightings(&scene.map);
   const SlamMap once = scene.map;
-  (void)refine_sightings({}, &scene.map);
+  (void)refine_sightings(&scene.map);
   for (std::uint32_t k = 0; k < once.keyframes().size(); ++k)
     EXPECT_EQ(once.keyframe(k).view.normalized, scene.map.keyframe(k).view.normalized);
 }
@@ -148,7 +148,7 @@ TEST(SightingRefinement, DoingItAgainChangesNothing) {
 TEST(SightingRefinement, WithoutPatchesEverythingStays) {
   Scene scene(false);
   const SlamMap before = scene.map;
-  const SightingRefinementReport report = refine_sightings({}, &scene.map);
+  const SightingRefinementReport report = refine_sightings(&scene.map);
   EXPECT_EQ(report.num_references, 0U);
   for (std::uint32_t k = 0; k < before.keyframes().size(); ++k)
     EXPECT_EQ(before.keyframe(k).view.normalized, scene.map.keyframe(k).view.normalized);

@@ -136,8 +136,8 @@ TEST(Slam, DepthReducesTheError) {
     options.noise_px = 1.0;
     Viewer viewer(world, options);
     SlamOptions slam_options = walk_options();
-    slam_options.use_depth_in_tracking = in_tracking;
-    slam_options.use_depth_in_adjustment = in_adjustment;
+    slam_options.numbers.depth_in_tracking = in_tracking ? 1 : 0;
+    slam_options.numbers.depth_in_adjustment = in_adjustment ? 1 : 0;
     Slam slam(viewer.camera(), slam_options);
     const Walk walk = walk_through(&viewer, circle(80, 0.8, 0, 3.5), &slam);
     const SlamResult result = slam.finish();
@@ -227,7 +227,7 @@ TEST(Slam, WithoutLoopsNothingIsJoined) {
   const World world = testing::make_room();
   Viewer viewer(world);
   SlamOptions options = walk_options();
-  options.close_loops = false;
+  options.numbers.close_loops = 0;
   Slam slam(viewer.camera(), options);
   const auto poses = joined(circle(40, 0.8, 0, 1.2), circle(90, 0.8, 3.6, 2 * kPi + 1.0));
   walk_through(&viewer, poses, &slam, [&](std::uint64_t frame, ViewFeatures* view) {
@@ -275,7 +275,7 @@ TEST(Slam, FarLandmarksCarryTrackingWithoutDepth) {
   const auto run = [&](bool has_far, std::uint32_t* num_lost, double* error_m) {
     Viewer viewer(world);
     SlamOptions options = walk_options();
-    if (!has_far) options.far_landmarks.max_distance_m = 0;
+    if (!has_far) options.numbers.far_max_distance_m = 0;
     Slam slam(viewer.camera(), options);
     const Walk walk = walk_through(&viewer, poses, &slam, [&](std::uint64_t frame, ViewFeatures* view) {
       if (frame >= 50 && frame < 85) std::fill(view->depth_m.begin(), view->depth_m.end(), 0.0F);

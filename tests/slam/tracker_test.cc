@@ -18,7 +18,7 @@ using testing::TrueKeyframes;
 /// `second_segment` on they belong to another segment.
 struct Fixture : TrueKeyframes {
   PlaceIndex places;
-  Tracker tracker{TrackerOptions{}, &map, &solver};
+  Tracker tracker{SlamNumbers{}, &map, &solver};
 
   explicit Fixture(int second_segment = 12, const testing::World& of = testing::make_room(1, 90)) : TrueKeyframes(of) {
     for (int k = 0; k < 12; ++k) {

@@ -105,6 +105,9 @@ class Bench:
         return [CAMLOC_BENCH, "--map", str(map or self.map), "--sequence", str(sequence or self.sequence),
                 "--camera", str(camera or self.camera), *more]
 
+    def slam_arguments(self, *more):
+        return [CAMLOC_BENCH, "slam", "--sequence", str(self.sequence), "--camera", str(self.camera), *more]
+
     def run(self, *arguments, **more):
         return subprocess.run(arguments, capture_output=True, text=True, timeout=60, **more)
 
@@ -245,6 +248,10 @@ def check_usage(bench):
                             ([CAMLOC, "map", "inf"], "did you mean 'map info'"), ([CAMLOC, "--bogus"], "camloc --help"),
                             ([CAMLOC, "eval"], "--estimate"), ([CAMLOC, "li\nne"], "li?ne"), ([CAMLOC_MAP], "camloc-map --help"),
                             ([CAMLOC_MAP, "build", "--bogus"], "camloc-map build --help"), ([CAMLOC_BENCH], "camloc bench --help"),
+                            ([CAMLOC_BENCH, "slam"], "camloc bench slam --help"),
+                            (bench.slam_arguments("--set", "slam.bogus=1"), "bogus: no such number"),
+                            (bench.slam_arguments("--set", "bogus=1"), "give slam.NAME=VALUE"),
+                            (bench.slam_arguments("--set", "slam.close_loops=maybe"), "close_loops=maybe"),
                             (bench.bench_arguments("--repeat", "0"), "--repeat"), (bench.localize_arguments("--mode", "fly"), "--mode"),
                             (bench.localize_arguments("--bogus"), "--bogus"), (bench.localize_arguments("extra"), "extra"),
                             (bench.localize_arguments("--json", str(bench.folder / "no" / "x.json")), "--json"),

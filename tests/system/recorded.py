@@ -10,6 +10,7 @@ import tempfile
 
 CAMLOC = os.environ["CAMLOC"]
 CAMLOC_MAP = os.environ["CAMLOC_MAP"]
+CAMLOC_BENCH = os.environ["CAMLOC_BENCH"]
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 CAMERAS = SOURCE / "config" / "cameras"
 DATA = pathlib.Path(os.environ.get("CAMLOC_DATA", SOURCE.parent / "shared" / "data"))

@@ -14,6 +14,7 @@
 #include "core/map/mapping_guard.h"
 #include "drivers/frame_source.h"
 #include "drivers/source_url.h"
+#include "tools/camloc-bench/commands.h"
 #include "tools/camloc-bench/opencv_reference.h"
 #include "tools/camloc/commands.h"
 #include "tools/common/command_line.h"
@@ -218,8 +219,15 @@ int main(int argc, char** argv) {
       "Example: camloc bench --map kitchen.cmap --sequence recordings/kitchen --camera 7scenes.toml --frames 300:600:5 \\\n"
       "             --mode single --reference-opencv\n"
       "Exit code: 0 done, 1 failed, 2 wrong usage or configuration.");
+  int exit_code = 0;
+  CLI::App* slam = camloc::bench::add_slam_command(app, exit_code);
+  // What localizing needs is not asked for with another command.
+  slam->preparse_callback([&app](std::size_t) {
+    for (CLI::Option* option : app.get_options()) option->required(false);
+  });
   bool is_over = false;
   if (const int usage = camloc::tools::parse_command_line(app, argc, argv, &is_over); is_over) return usage;
+  if (slam->parsed()) return exit_code;
   arguments.run.is_single = arguments.mode == "single";
   return camloc::tools::report(bench(arguments));
 }

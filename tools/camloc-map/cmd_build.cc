@@ -30,7 +30,6 @@ constexpr const char* kFooter =
 struct BuildArguments {
   BuildRequest request;
   std::string camera_path;
-  std::string adjustment = "depth", tracking = "depth";
   bool is_json = false;
 };
 
@@ -62,8 +61,6 @@ int run(BuildArguments arguments) {
   if (!camera.is_ok()) return report_error(camera.status(), 2);
   request.camera = camera.value();
   if (const Status checked = check_arguments(arguments); !checked.is_ok()) return report_error(checked, 2);
-  request.slam.use_depth_in_adjustment = arguments.adjustment == "depth";
-  request.slam.use_depth_in_tracking = arguments.tracking == "depth";
   BuildSummary summary;
   if (const Status built = build_map(request, &summary); !built.is_ok()) {
     return report_error(built, built.code() == ErrorCode::kInvalid ? 2 : 1);
@@ -126,12 +123,6 @@ void add_build_command(CLI::App& app, int& exit_code) {
   points->needs(observed);
   command->add_flag("--exclude-suspects", request.survey.is_excluding_suspects, "Leave out control points that the others contradict")
       ->needs(points);
-  command->add_option("--ba", arguments->adjustment, "Bundle adjustment with measured depth or without, for comparison")
-      ->check(CLI::IsMember({"2d", "depth"}))
-      ->capture_default_str();
-  command->add_option("--tracking", arguments->tracking, "The same for tracking")
-      ->check(CLI::IsMember({"2d", "depth"}))
-      ->capture_default_str();
   command->add_flag("--json", arguments->is_json, "Print the summary as JSON");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

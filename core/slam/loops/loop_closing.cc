@@ -11,18 +11,22 @@ namespace camloc {
 namespace {
 
 constexpr std::size_t kMaxPending = 8;
-constexpr std::uint32_t kMaxPendingGap = 6;   // keyframes between two opinions on one loop
-constexpr std::uint32_t kMinLinkShared = 60;  // landmarks that make two keyframes linked in the pose graph
+constexpr int kConfirmationsWithinReach = 3;  // keyframes that must agree to join a segment with the one before it
+constexpr int kConfirmationsOutOfReach = 8;   // and any other two segments, over at least
+constexpr double kMinJoinedPathM = 2.0;
+constexpr double kAgreementM = 0.10, kAgreementRad = 0.04;  // of two opinions on one loop
+constexpr std::uint32_t kMaxPendingGap = 6;                 // keyframes between two opinions on one loop
+constexpr std::uint32_t kMinLinkShared = 60;                // landmarks that make two keyframes linked in the pose graph
 constexpr float kFuseRadiusPx = 8;
 
 }  // namespace
 
-LoopCloser::LoopCloser(const LoopOptions& options, SlamMap* map, PoseSolver* solver)
-    : options_(options),
+LoopCloser::LoopCloser(const SlamNumbers& numbers, SlamMap* map, PoseSolver* solver)
+    : numbers_(numbers),
       map_(map),
       solver_(solver),
-      reckoning_(options, map),
-      detector_(options, map, solver, &reckoning_),
+      reckoning_(numbers, map),
+      detector_(numbers, map, solver, &reckoning_),
       place_landmarks_(map->empty_landmark_set()) {}
 
 void LoopCloser::add_link(const PoseGraphEdge& link) {
@@ -66,11 +70,11 @@ bool LoopCloser::is_confirmed(double strain) const {
   const LoopMatch& last = pending_.back();
   const auto count = static_cast<int>(pending_.size());
   if (map_->keyframe(last.place).segment == map_->keyframe(last.keyframe).segment)
-    return count >= (strain > 1 ? options_.num_confirmations : 1);
-  if (reckoning_.begin_between(last.place, last.keyframe) != nullptr) return count >= options_.num_confirmations_within_reach;
+    return count >= (strain > 1 ? numbers_.loop_confirmations : 1);
+  if (reckoning_.begin_between(last.place, last.keyframe) != nullptr) return count >= kConfirmationsWithinReach;
   const double walked =
       (map_->keyframe(first.keyframe).view.T_map_camera.translation - map_->keyframe(last.keyframe).view.T_map_camera.translation).norm();
-  return count >= options_.num_confirmations_out_of_reach && walked >= options_.min_joined_path_m;
+  return count >= kConfirmationsOutOfReach && walked >= kMinJoinedPathM;
 }
 
 // Both move the newer one's keyframe to the same pose.
@@ -78,8 +82,8 @@ bool LoopCloser::agrees(const LoopMatch& a, const LoopMatch& b) const {
   if (map_->keyframe(a.place).segment != map_->keyframe(b.place).segment) return false;
   const Rigid3 T_map_now = map_->keyframe(b.keyframe).view.T_map_camera;
   const Rigid3 by_a = a.T_correction * T_map_now, by_b = b.T_correction * T_map_now;
-  return (by_a.translation - by_b.translation).norm() <= options_.agreement_m &&
-         rotation_distance_rad(by_a.rotation, by_b.rotation) <= options_.agreement_rad;
+  return (by_a.translation - by_b.translation).norm() <= kAgreementM &&
+         rotation_distance_rad(by_a.rotation, by_b.rotation) <= kAgreementRad;
 }
 
 // The keyframes of a segment with links between those that share landmarks; all others are fixed.
@@ -117,7 +121,7 @@ bool LoopCloser::spread_error(const std::vector<LoopMatch>& matches) {
   for (const LoopMatch& match : matches) graph.edges.push_back({match.place, match.keyframe, match.T_place_keyframe, match.covariance});
   const PoseGraphReport report = optimize_pose_graph({}, &graph);
   const auto worst = std::max_element(report.edge_chi2.begin(), report.edge_chi2.begin() + num_links);
-  if (num_links > 0 && !(*worst <= options_.max_chi2)) return false;
+  if (num_links > 0 && !(*worst <= numbers_.loop_max_chi2)) return false;
   edges_.insert(edges_.end(), graph.edges.end() - static_cast<std::ptrdiff_t>(matches.size()), graph.edges.end());
   move_to(graph.T_map_pose);
   return true;
@@ -156,14 +160,14 @@ void LoopCloser::fuse(const std::vector<LoopMatch>& matches) {
 void LoopCloser::fuse_surroundings(const LoopMatch& last) {
   std::vector<std::uint32_t> then = {last.place}, now = {last.keyframe};
   for (const CovisibleKeyframe& c : map_->covisible(last.place, 30)) {
-    if (then.size() < options_.keyframes_per_place && c.keyframe + kMaxPendingGap < last.keyframe) then.push_back(c.keyframe);
+    if (then.size() < kKeyframesPerPlace && c.keyframe + kMaxPendingGap < last.keyframe) then.push_back(c.keyframe);
   }
   for (const CovisibleKeyframe& c : map_->covisible(last.keyframe, 30)) {
     const bool is_then = std::find(then.begin(), then.end(), c.keyframe) != then.end();
-    if (now.size() < 2 * options_.keyframes_per_place && !is_then) now.push_back(c.keyframe);
+    if (now.size() < 2 * kKeyframesPerPlace && !is_then) now.push_back(c.keyframe);
   }
   for (const std::uint32_t k : now) {
-    map_->collect_landmarks(then, options_.max_place_landmarks, &place_landmarks_);
+    map_->collect_landmarks(then, kMaxPlaceLandmarks, &place_landmarks_);
     fuse_into_keyframe(&place_landmarks_, k, kFuseRadiusPx, solver_, map_);
   }
 }

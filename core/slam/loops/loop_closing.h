@@ -14,7 +14,6 @@
 #include "core/registration/view_registration.h"
 #include "core/slam/dead_reckoning.h"
 #include "core/slam/loops/loop_detection.h"
-#include "core/slam/loops/loop_options.h"
 #include "core/slam/loops/place_index.h"
 #include "core/slam/slam_map.h"
 
@@ -32,7 +31,7 @@ struct LoopReport {
 
 class LoopCloser {
  public:
-  LoopCloser(const LoopOptions& options, SlamMap* map, PoseSolver* solver);
+  LoopCloser(const SlamNumbers& numbers, SlamMap* map, PoseSolver* solver);
   LoopCloser(const LoopCloser&) = delete;
   LoopCloser& operator=(const LoopCloser&) = delete;
 
@@ -51,7 +50,7 @@ class LoopCloser {
   void fuse(const std::vector<LoopMatch>& matches);
   void fuse_surroundings(const LoopMatch& match);
 
-  LoopOptions options_;
+  SlamNumbers numbers_;
   SlamMap* map_;
   PoseSolver* solver_;
   DeadReckoning reckoning_;

@@ -16,11 +16,13 @@
 #include "core/registration/landmark_set.h"
 #include "core/registration/view_registration.h"
 #include "core/slam/dead_reckoning.h"
-#include "core/slam/loops/loop_options.h"
 #include "core/slam/loops/place_index.h"
 #include "core/slam/slam_map.h"
 
 namespace camloc {
+
+/// What is asked of a place: its keyframe and those around it, and what they see.
+inline constexpr std::size_t kKeyframesPerPlace = 6, kMaxPlaceLandmarks = 3500;
 
 /// An old place as a keyframe of now saw it.
 struct LoopMatch {
@@ -34,8 +36,8 @@ struct LoopMatch {
 
 class LoopDetector {
  public:
-  LoopDetector(const LoopOptions& options, const SlamMap* map, PoseSolver* solver, const DeadReckoning* reckoning)
-      : options_(options), map_(map), solver_(solver), reckoning_(reckoning), place_landmarks_(map->empty_landmark_set()) {}
+  LoopDetector(const SlamNumbers& numbers, const SlamMap* map, PoseSolver* solver, const DeadReckoning* reckoning)
+      : numbers_(numbers), map_(map), solver_(solver), reckoning_(reckoning), place_landmarks_(map->empty_landmark_set()) {}
 
   /// The place that a keyframe of the map saw again, if there is one without doubt.
   [[nodiscard]] std::optional<LoopMatch> find(std::uint32_t keyframe, const PlaceIndex& places);
@@ -51,7 +53,7 @@ class LoopDetector {
   void try_place(std::uint32_t keyframe, std::uint32_t place, bool is_nearby, std::vector<Candidate>* candidates);
   [[nodiscard]] bool has_rival(const Candidate& best, const std::vector<Candidate>& candidates) const;
 
-  LoopOptions options_;
+  SlamNumbers numbers_;
   const SlamMap* map_;
   PoseSolver* solver_;
   const DeadReckoning* reckoning_;

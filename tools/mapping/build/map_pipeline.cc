@@ -128,6 +128,7 @@ Result<Walk> prepare_walk(const BuildRequest& request) {
   if (!frames->has_depth) return Status(ErrorCode::kInvalid, request.frames.sequence + ": has no depth images; a map needs depth");
   walk.frames = frames.value();
   SlamOptions slam = request.slam;
+  slam.orb = request.map.orb;
   if (!request.survey.points_path.empty()) {
     auto survey = read_survey(request.survey, walk.frames.folder, request.camera);
     if (!survey.is_ok()) return survey.status();

@@ -1,16 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// One observation and one landmark: weights and derivatives against differences, the elimination against the whole system.
-#include "core/optimize/bundle_terms.h"
+// One landmark: what the terms of its observations say against differences, its elimination against the whole system.
+#include "core/optimize/landmark_elimination.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <array>
+#include <limits>
 
 #include "core/geometry/pose_jacobian.h"
-#include "core/optimize/landmark_elimination.h"
 #include "tests/geometry/generated.h"
 
 namespace camloc {
@@ -43,11 +42,10 @@ struct Sight {
 
   /// Cost after a change of (camera 1, camera 2, landmark).
   [[nodiscard]] double cost(const Eigen::VectorXd& change) const {
-    const BundleModel model(options);
-    const std::vector<BundleCamera> cameras{{T_map_camera[0], kFixedCamera},
+    const std::vector<BundleCamera> cameras{{T_map_camera[0], kFixedPose},
                                             {moved_in_camera_axes(T_map_camera[1], change.head<6>()), 0},
                                             {moved_in_camera_axes(T_map_camera[2], change.segment<6>(6)), 1}};
-    return LandmarkEliminator(model, cameras).cost(landmark(), X + change.tail<3>());
+    return LandmarkEliminator(options, cameras).cost(landmark(), X + change.tail<3>());
   }
 };
 
@@ -66,8 +64,7 @@ TEST(LandmarkElimination, StepIsThatOfTheWholeSystem) {
   std::mt19937 rng(1);
   for (int i = 0; i < 20; ++i) {
     const Sight sight(rng);
-    const BundleModel model(sight.options);
-    const std::vector<BundleCamera> cameras{{sight.T_map_camera[0], kFixedCamera}, {sight.T_map_camera[1], 0}, {sight.T_map_camera[2], 1}};
+    const std::vector<BundleCamera> cameras{{sight.T_map_camera[0], kFixedPose}, {sight.T_map_camera[1], 0}, {sight.T_map_camera[2], 1}};
     // The whole Gauss-Newton matrix from residuals by differences, weighted as the kernels weight.
     Eigen::MatrixXd H = Eigen::MatrixXd::Zero(15, 15);
     Eigen::VectorXd g = Eigen::VectorXd::Zero(15);
@@ -76,11 +73,14 @@ TEST(LandmarkElimination, StepIsThatOfTheWholeSystem) {
         Rigid3 T = sight.T_map_camera[o.camera];
         if (o.camera > 0) T = moved_in_camera_axes(T, change.segment<6>(6 * (o.camera - 1)));
         const Eigen::Vector3d X = sight.X + change.tail<3>();
-        const BundleTerms t = bundle_terms(model, o, BundleCamera(T, 0), X.data());
-        return {t.du, t.dv, t.dz};
+        const BundleCamera camera(T, 0);
+        const SeenLandmark seen(o, camera, X.data());
+        return {ReprojectionTerm(sight.options, o, seen).residual[0], ReprojectionTerm(sight.options, o, seen).residual[1],
+                DepthTerm(sight.options, o, seen).residual[0]};
       };
-      const BundleTerms t = bundle_terms(model, o, cameras[o.camera], sight.X.data());
-      const Eigen::Vector3d weights(t.pixel_weight, t.pixel_weight, t.depth_weight);
+      const SeenLandmark seen(o, cameras[o.camera], sight.X.data());
+      const double pixel_weight = ReprojectionTerm(sight.options, o, seen).weight;
+      const Eigen::Vector3d weights(pixel_weight, pixel_weight, DepthTerm(sight.options, o, seen).weight);
       Eigen::MatrixXd J(3, 15);
       for (int k = 0; k < 15; ++k) {
         const Eigen::VectorXd step = 1e-6 * Eigen::VectorXd::Unit(15, k);
@@ -96,9 +96,8 @@ TEST(LandmarkElimination, StepIsThatOfTheWholeSystem) {
     // The kernels' weights make it the gradient of the robust cost.
     EXPECT_LT((g - gradient(sight, Eigen::VectorXd::Zero(15))).norm(), 1e-5 * g.norm());
 
-    ReducedCameras reduced(2);
-    reduced.diagonal.assign(2, Vector6d::Zero());
-    LandmarkEliminator eliminator(model, cameras);
+    PoseEquations reduced(2);
+    LandmarkEliminator eliminator(sight.options, cameras);
     const double cost = eliminator.eliminate(sight.landmark(), sight.X, 0.0, &reduced);
     EXPECT_NEAR(cost, sight.cost(Eigen::VectorXd::Zero(15)), 1e-9 * cost);
     const Eigen::Matrix3d C_inverse = H.bottomRightCorner<3, 3>().inverse();
@@ -120,24 +119,72 @@ TEST(LandmarkElimination, StepIsThatOfTheWholeSystem) {
   }
 }
 
-TEST(BundleTerms, HuberIsQuadraticInsideAndLinearOutside) {
-  double weight = 3;
-  EXPECT_EQ(huber(4, 2, &weight), 4);
-  EXPECT_EQ(weight, 3);
-  EXPECT_DOUBLE_EQ(huber(100, 2, &weight), 2 * 2 * 10 - 4);
-  EXPECT_DOUBLE_EQ(weight, 3 * 0.2);
+/// Every term's derivatives by pose and landmark against differences of its residuals.
+template <class Term>
+void expect_true_derivatives(const Sight& sight) {
+  for (const BundleObservation& o : sight.observations) {
+    const auto residual = [&](const Vector6d& by_pose, const Eigen::Vector3d& by_landmark, int row) {
+      const BundleCamera camera(moved_in_camera_axes(sight.T_map_camera[o.camera], by_pose), 0);
+      const Eigen::Vector3d X = sight.X + by_landmark;
+      return Term(sight.options, o, SeenLandmark(o, camera, X.data())).residual[row];
+    };
+    const BundleCamera camera(sight.T_map_camera[o.camera], 0);
+    const SeenLandmark seen(o, camera, sight.X.data());
+    if (Term(sight.options, o, seen).weight == 0) continue;
+    for (int row = 0; row < Term::kRows; ++row) {
+      for (int k = 0; k < 6; ++k) {
+        const Vector6d step = 1e-6 * Vector6d::Unit(k);
+        const double difference = (residual(step, Eigen::Vector3d::Zero(), row) - residual(-step, Eigen::Vector3d::Zero(), row)) / 2e-6;
+        EXPECT_NEAR(Term::by_pose(seen)(k, row), difference, 1e-7) << "row " << row << " by " << k;
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        const Eigen::Vector3d step = 1e-6 * Eigen::Vector3d::Unit(axis);
+        const double difference = (residual(Vector6d::Zero(), step, row) - residual(Vector6d::Zero(), -step, row)) / 2e-6;
+        EXPECT_NEAR(Term::by_landmark(axis, seen)[static_cast<std::size_t>(row)] * Term::landmark_scale(seen), difference, 1e-7);
+      }
+    }
+  }
 }
 
-TEST(BundleTerms, CostBehindTheCameraIsThatAt45Degrees) {
-  const BundleModel model{BundleOptions{}};
+TEST(ObservationTerms, DerivativesAgreeWithDifferences) {
+  std::mt19937 rng(2);
+  for (int i = 0; i < 20; ++i) {
+    const Sight sight(rng);
+    expect_true_derivatives<ReprojectionTerm>(sight);
+    expect_true_derivatives<DepthTerm>(sight);
+  }
+}
+
+TEST(Kernels, HuberIsQuadraticInsideAndLinearOutside) {
+  EXPECT_EQ(huber(4, 2).cost, 4);
+  EXPECT_EQ(huber(4, 2).weight, 1);
+  EXPECT_DOUBLE_EQ(huber(100, 2).cost, 2 * 2 * 10 - 4);
+  EXPECT_DOUBLE_EQ(huber(100, 2).weight, 0.2);
+}
+
+TEST(Kernels, CauchyLetsGoOfWhatIsFarAndLeavesOutWhatIsNotFinite) {
+  EXPECT_DOUBLE_EQ(cauchy(3, 0).cost, 3);
+  EXPECT_DOUBLE_EQ(cauchy(3, 0).weight, 1);
+  EXPECT_NEAR(cauchy(1e-6, 2).cost, 1e-6, 1e-12);
+  EXPECT_DOUBLE_EQ(cauchy(400, 2).weight, 1.0 / 101);
+  for (const double width : {0.0, 2.0}) {
+    EXPECT_EQ(cauchy(std::numeric_limits<double>::infinity(), width).weight, 0);
+    EXPECT_EQ(cauchy(std::numeric_limits<double>::quiet_NaN(), width).cost, 0);
+  }
+}
+
+TEST(ObservationTerms, CostBehindTheCameraIsThatAt45Degrees) {
+  const BundleOptions options;
   const BundleCamera camera(Rigid3{}, 0);
   const BundleObservation observation{0, 0, 0, 0, 1, 1};
+  const auto cost = [&](const double X[3]) { return ObservationTerms(options, observation, SeenLandmark(observation, camera, X)).cost(); };
   const double at_45[] = {0.999999, 0, 1.0}, beyond[] = {3, 0, 1.0}, behind[] = {0, 0, -1};
-  const BundleTerms out = bundle_terms(model, observation, camera, behind);
-  EXPECT_NEAR(bundle_terms(model, observation, camera, at_45).cost, out.cost, 0.01);
-  EXPECT_EQ(bundle_terms(model, observation, camera, beyond).cost, out.cost);
-  EXPECT_EQ(out.pixel_weight, 0);
-  EXPECT_EQ(out.depth_weight, 0);
+  EXPECT_NEAR(cost(at_45), cost(behind), 0.01);
+  EXPECT_EQ(cost(beyond), cost(behind));
+  const SeenLandmark out(observation, camera, behind);
+  EXPECT_FALSE(out.is_in_view);
+  EXPECT_EQ(ReprojectionTerm(options, observation, out).weight, 0);
+  EXPECT_EQ(DepthTerm(options, observation, out).weight, 0);
 }
 
 }  // namespace
