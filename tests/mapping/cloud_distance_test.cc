@@ -8,7 +8,7 @@
 
 #include "tests/mapping/scanned_flat.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 /// A floor of 10 x 10 m, a point every 2 cm.
@@ -114,4 +114,4 @@ TEST(CloudIndexTest, FindsNeighborsAndPlanes) {
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

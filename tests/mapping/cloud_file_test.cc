@@ -11,7 +11,7 @@
 #include <limits>
 #include <sstream>
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 const std::vector<Eigen::Vector3d> kPoints = {{1.5, -2.25, 0.5}, {2, 4, 8}, {-3.125, 0, 1}};
@@ -312,4 +312,4 @@ TEST(CloudAccumulator, IsNotMisledByAStrayFirstPoint) {
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -11,7 +11,7 @@
 #include "tools/mapping/cloud/cell_correlation.h"
 #include "tools/mapping/cloud/wall_directions.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -171,4 +171,4 @@ TEST(CellGridTest, FindsWhereAPieceBelongs) {
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -11,7 +11,7 @@
 
 #include "tests/map/synthetic_map.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using testing::TemporaryFolder;
@@ -138,4 +138,4 @@ TEST_F(ColmapModelTest, LinesMayEndAsOnOtherSystems) {
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -12,7 +12,7 @@
 #include "tests/map/room_map.h"
 #include "tools/mapping/build/posed_frames.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using testing::looking;
@@ -158,4 +158,4 @@ TEST_F(ColmapPosesTest, PosesAreOfTheColorCamera) {
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

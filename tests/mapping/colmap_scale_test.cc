@@ -10,7 +10,7 @@
 
 #include "tests/map/synthetic_map.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 /// `noise` is relative; every `outlier_step`-th pair is nonsense.
@@ -73,4 +73,4 @@ TEST(ModelScaleTest, RefusesTooFewPairs) {
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -10,7 +10,7 @@
 
 #include "tests/geometry/generated.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 std::vector<ControlPoint> points_of(const std::string& text) {
@@ -240,4 +240,4 @@ TEST(AverageSightings, NamesTheOneThatIsAnotherPoint) {
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -9,7 +9,7 @@
 #include "core/io/image_writer.h"
 #include "tests/tools/command_runner.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 RgbdCamera small_camera() {
@@ -118,4 +118,4 @@ TEST(DenseCloud, FusesARecordingWhosePosesAreOfTheDepthCamera) {
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -14,7 +14,7 @@
 #include "tests/tools/command_runner.h"
 #include "tools/camloc-map/commands.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using camloc::testing::looking;
@@ -250,4 +250,4 @@ TEST_F(EvalCommand, RefusesWhatItCannotUse) {
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

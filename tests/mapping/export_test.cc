@@ -14,7 +14,7 @@
 #include "tools/mapping/colmap/map_export.h"
 #include "tools/mapping/site/map_up.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using testing::make_room_map;
@@ -218,4 +218,4 @@ TEST_F(ExportTest, UpIsTheFlatAxisWhereCamerasDoNotTurnAndTheSitesZWhereThereIsO
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

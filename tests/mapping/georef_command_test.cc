@@ -13,7 +13,7 @@
 #include "tests/tools/command_runner.h"
 #include "tools/camloc-map/commands.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using camloc::testing::make_synthetic_map;
@@ -241,4 +241,4 @@ TEST(GeorefCommand, FramesOfAnotherPlaceAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -12,7 +12,7 @@
 #include "tests/geometry/generated.h"
 #include "tools/mapping/site/consensus.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using testing::random_vector;
@@ -287,4 +287,4 @@ TEST(ConsensusTest, IsDeterministicAlsoWhereItSamples) {
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

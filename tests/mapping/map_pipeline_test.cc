@@ -16,7 +16,7 @@
 #include "tools/mapping/build/view_log.h"
 #include "tools/mapping/build/walk_tracking.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::uint64_t kFrames = 36;
@@ -232,4 +232,4 @@ TEST(FindFrames, SaysWhetherThereIsDepth) {
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -14,7 +14,7 @@
 #include "tools/common/command_line.h"
 #include "tools/mapping/build/merge_pipeline.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 class MergeCommandTest : public ::testing::Test {
@@ -122,4 +122,4 @@ TEST_F(MergeCommandTest, BuildExtendsAMapByAnotherRecordingOfTheRoom) {
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

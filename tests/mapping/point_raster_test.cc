@@ -9,7 +9,7 @@
 #include <limits>
 #include <random>
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr Rgb kBlack{0, 0, 0}, kRed{255, 0, 0}, kGreen{0, 255, 0};
@@ -206,4 +206,4 @@ TEST(FitViewBadInput, TakesNoPointsAndOnePoint) {
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 RgbdCamera surface_camera() {
@@ -60,4 +60,4 @@ TEST(SurfaceSample, PointsAreInTheFrameOfTheColourCamera) {
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -11,7 +11,7 @@
 
 #include "tests/drivers/test_folder.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::uint64_t kIdentity = 0x1234567890ABCDEF;
@@ -200,4 +200,4 @@ TEST(ViewLog, WhatCannotBeWrittenIsAnErrorWithThePath) {
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -15,7 +15,7 @@
 #include "tools/mapping/colmap/colmap_model.h"
 #include "tools/mapping/picture/map_picture.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using testing::make_room_map;
@@ -206,4 +206,4 @@ TEST_F(ViewTest, CommandsWriteTheirFilesOrSayWhyNot) {
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 RgbdCamera test_camera() {
@@ -173,4 +173,4 @@ TEST(WalkCheck, NothingSeenIsNoVerdict) {
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -13,7 +13,7 @@
 #include "tools/common/interrupt.h"
 #include "tools/mapping/build/view_log.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 WalkRequest request_for(const TestFolder& folder) {
@@ -120,4 +120,4 @@ TEST(WalkTracking, TheIdentityChangesWithRecordingCameraAndFeatures) {
 }
 
 }  // namespace
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -15,7 +15,7 @@
 #include "tools/mapping/build/build_report.h"
 #include "tools/mapping/build/map_pipeline.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr const char* kFooter =
@@ -136,4 +136,4 @@ void add_build_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -22,7 +22,7 @@
 #include "tools/mapping/eval/eval_report.h"
 #include "tools/mapping/eval/evaluation.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using tools::InterruptGuard;
@@ -265,4 +265,4 @@ void add_eval_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

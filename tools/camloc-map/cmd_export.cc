@@ -12,7 +12,7 @@
 #include "tools/common/output_path.h"
 #include "tools/mapping/colmap/map_export.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr const char* kFooter =
@@ -89,4 +89,4 @@ void add_export_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

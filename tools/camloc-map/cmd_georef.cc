@@ -21,7 +21,7 @@
 #include "tools/mapping/site/georef_fit.h"
 #include "tools/mapping/site/georef_report.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using tools::InterruptGuard;
@@ -184,4 +184,4 @@ void add_georef_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

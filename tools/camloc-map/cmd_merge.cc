@@ -12,7 +12,7 @@
 #include "tools/common/output_path.h"
 #include "tools/mapping/build/merge_pipeline.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr const char* kFooter =
@@ -72,4 +72,4 @@ void add_merge_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

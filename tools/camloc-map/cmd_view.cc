@@ -12,7 +12,7 @@
 #include "tools/common/output_path.h"
 #include "tools/mapping/picture/map_picture.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::size_t kMaxWeakPlaces = 5;  // of each kind
@@ -67,4 +67,4 @@ void add_view_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

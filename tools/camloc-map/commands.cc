@@ -4,11 +4,11 @@
 
 #include "tools/common/command_line.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 int report_error(const Status& status, int exit_code) {
   tools::print_error("camloc-map", status.message());
   return exit_code;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

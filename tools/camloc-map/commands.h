@@ -9,7 +9,7 @@
 
 #include "core/base/result.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 void add_build_command(CLI::App& app, int& exit_code);
 void add_eval_command(CLI::App& app, int& exit_code);
@@ -21,4 +21,4 @@ void add_merge_command(CLI::App& app, int& exit_code);
 /// Prints "camloc-map: <message>" on stderr and returns `exit_code`.
 int report_error(const Status& status, int exit_code);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

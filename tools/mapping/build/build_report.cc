@@ -7,7 +7,7 @@
 
 #include "tools/common/text_format.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using tools::append_text;
@@ -168,4 +168,4 @@ std::string format_json(const BuildSummary& s) {
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -16,7 +16,7 @@
 #include "tools/mapping/build/view_log.h"
 #include "tools/mapping/build/walk_tracking.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using tools::InterruptGuard;
@@ -287,4 +287,4 @@ Status build_map(const BuildRequest& request, BuildSummary* summary) {
   return built;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -15,7 +15,7 @@
 #include "tools/mapping/build/posed_frames.h"
 #include "tools/mapping/build/walk_site.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 struct BuildRequest {
   PosedFramesRequest frames;  ///< `poses` empty: SLAM finds them
@@ -39,4 +39,4 @@ struct BuildRequest {
 /// The view log of a build, beside its map.
 [[nodiscard]] std::string view_log_path(const std::string& map_path);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -9,7 +9,7 @@
 #include "core/base/result.h"
 #include "core/merge/map_merging.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 struct MergeSummary {
   std::string map_a, map_b;  ///< b: a map file or the recording it was made from
@@ -28,4 +28,4 @@ struct MergeSummary {
 [[nodiscard]] std::string format_table(const MergeSummary& summary);
 [[nodiscard]] std::string format_json(const MergeSummary& summary);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

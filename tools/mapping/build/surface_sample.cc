@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/mapping/build/surface_sample.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 std::vector<Eigen::Vector3f> sample_surface(const RgbdCamera& camera, ImageView<std::uint16_t> depth, int columns, int rows) {
   std::vector<Eigen::Vector3f> points;
@@ -18,4 +18,4 @@ std::vector<Eigen::Vector3f> sample_surface(const RgbdCamera& camera, ImageView<
   return points;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

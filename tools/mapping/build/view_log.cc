@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <system_error>
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::array<char, 8> kMagic = {'C', 'M', 'V', 'I', 'E', 'W', 'S', '\n'};
@@ -192,4 +192,4 @@ Status ViewLogReader::next(LoggedView* logged) {
   return Status::ok();
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -7,7 +7,7 @@
 
 #include "tools/common/text_format.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::uint64_t kEarlyFrames = 30;  // enough to tell a broken sensor from a lens cap at the start
@@ -122,4 +122,4 @@ std::vector<WeakSpot> WalkCheck::weak_spots() const {
   return spots;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -11,7 +11,7 @@
 #include "drivers/frame_source.h"
 #include "tools/common/frame_reading.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr double kToleranceM = 0.10, kBendPerM = 0.01;
@@ -168,4 +168,4 @@ std::optional<WcsDatum> adjust_to_survey(const SurveyRequest& request, const Sur
   return summary->fit.datum;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

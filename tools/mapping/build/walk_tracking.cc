@@ -14,7 +14,7 @@
 #include "tools/mapping/build/surface_sample.h"
 #include "tools/mapping/build/view_log.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using tools::InterruptGuard;
@@ -138,4 +138,4 @@ Result<WalkEnd> track_walk(const WalkRequest& request, Slam* slam, WalkCheck* ch
   return pass.end();
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

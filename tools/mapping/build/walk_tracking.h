@@ -16,7 +16,7 @@
 #include "tools/common/frame_reading.h"
 #include "tools/mapping/build/walk_check.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 struct WalkRequest {
   std::string url;               ///< for open_frame_source
@@ -50,4 +50,4 @@ struct WalkEnd {
 /// the wrong size.
 [[nodiscard]] Result<WalkEnd> track_walk(const WalkRequest& request, Slam* slam, WalkCheck* check);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

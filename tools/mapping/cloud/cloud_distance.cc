@@ -8,7 +8,7 @@
 
 #include "tools/mapping/cloud/point_cloud.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 struct Box {
@@ -128,4 +128,4 @@ CloudDistances measure_distances(std::span<const Eigen::Vector3d> landmarks_m, s
   return result;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

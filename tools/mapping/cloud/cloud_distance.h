@@ -12,7 +12,7 @@
 
 #include "tools/mapping/cloud/cloud_index.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 struct DistanceStatistics {
   std::uint64_t count = 0;
@@ -47,4 +47,4 @@ struct CloudDistances {
 [[nodiscard]] CloudDistances measure_distances(std::span<const Eigen::Vector3d> landmarks_m, std::span<const Eigen::Vector3d> keyframes_m,
                                                CloudIndex* cloud, const DistanceOptions& options);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

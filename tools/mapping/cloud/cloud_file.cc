@@ -13,7 +13,7 @@
 
 #include "tools/mapping/cloud/cloud_formats.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 struct Reader {
@@ -122,4 +122,4 @@ Result<PointCloud> read_cloud(const std::string& path, const CloudOptions& optio
   return read_cloud(stream, path, options, progress);
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

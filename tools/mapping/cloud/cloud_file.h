@@ -12,7 +12,7 @@
 #include "tools/mapping/cloud/cloud_input.h"
 #include "tools/mapping/cloud/point_cloud.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 /// Errors, all naming the file: kNotFound, kIo (unreadable, or stopped by `progress`), kUnsupported (LAZ, E57, an unknown kind, a
 /// variant that is not read; says how to convert), kCorrupt (truncated, counts larger than the file, a line that is no
@@ -23,4 +23,4 @@ namespace camloc::map_tool {
 [[nodiscard]] Result<PointCloud> read_cloud(std::istream& stream, const std::string& name, const CloudOptions& options,
                                             const CloudProgress& progress = {});
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

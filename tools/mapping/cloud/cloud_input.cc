@@ -6,7 +6,7 @@
 #include <cassert>
 #include <cstring>
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
@@ -80,4 +80,4 @@ Status CloudInput::truncated(const std::string& what) const {
   return {ErrorCode::kCorrupt, name_ + ": is truncated: " + what};
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

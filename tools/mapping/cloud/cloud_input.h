@@ -17,7 +17,7 @@
 
 #include "core/base/result.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 /// Called about once a megabyte; false stops the reading.
 using CloudProgress = std::function<bool(std::uint64_t done_bytes, std::uint64_t total_bytes)>;
@@ -63,4 +63,4 @@ class CloudInput {
   bool is_stopped_ = false;
 };
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -9,7 +9,7 @@
 
 #include "core/base/order_statistics.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
@@ -166,4 +166,4 @@ double capped_mean_distance(std::span<const Eigen::Vector3d> points_map, const C
   return points_map.empty() ? 0 : sum / static_cast<double>(points_map.size());
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

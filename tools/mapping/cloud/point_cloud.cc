@@ -8,7 +8,7 @@
 
 #include "core/base/order_statistics.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::size_t kPointsForOrigin = 4096;  // their median: an invalid return at (0, 0, 0) may come first
@@ -114,4 +114,4 @@ PointCloud CloudAccumulator::finish() {
   return cloud;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <map>
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 /// Of a list that is not empty; of an even number the mean of the middle two.
@@ -80,4 +80,4 @@ Result<ModelScale> estimate_model_scale(std::span<const DepthPair> pairs, const 
   return scale;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

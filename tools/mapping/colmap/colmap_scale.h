@@ -12,7 +12,7 @@
 
 #include "core/base/result.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 /// A point of the model as one image sees it.
 struct DepthPair {
@@ -44,4 +44,4 @@ struct ModelScaleOptions {
 /// belong together.
 [[nodiscard]] Result<ModelScale> estimate_model_scale(std::span<const DepthPair> pairs, const ModelScaleOptions& options = {});
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -10,7 +10,7 @@
 #include "core/io/replace_file.h"
 #include "tools/mapping/colmap/colmap_model.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 /// " VALUE", the shortest text that reads back to the same bits, whatever the locale.
@@ -109,4 +109,4 @@ Status write_colmap_model(const ColmapModel& model, const std::string& folder, c
   return Status::ok();
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -11,7 +11,7 @@
 #include "tools/mapping/picture/point_raster.h"
 #include "tools/mapping/site/map_up.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 Rigid3 T_out_map(const MapView& map, const ExportOptions& options) {
@@ -154,4 +154,4 @@ std::string format_tum(const MapView& map, const ExportOptions& options) {
   return text;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

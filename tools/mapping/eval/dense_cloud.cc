@@ -8,7 +8,7 @@
 #include "drivers/frame_source.h"
 #include "tools/common/frame_reading.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 /// A neighbour that is farther away than noise and slope explain: the pixel may mix both sides.
@@ -61,4 +61,4 @@ Result<PointCloud> fuse_dense_cloud(const PosedFrames& frames, const RgbdCamera&
   return cloud;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -14,7 +14,7 @@
 #include "tools/mapping/build/posed_frames.h"
 #include "tools/mapping/cloud/point_cloud.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 struct DenseCloudOptions {
   int pixel_step = 2;        ///< every so many pixels, along rows and columns
@@ -35,4 +35,4 @@ using FrameProgress = std::function<bool(std::uint64_t done, std::uint64_t total
 void add_depth_image(const RgbdCamera& camera, ImageView<std::uint16_t> depth, const Rigid3& T_world_camera,
                      const DenseCloudOptions& options, CloudAccumulator* cloud);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -9,7 +9,7 @@
 #include "tools/mapping/cloud/wall_directions.h"
 #include "tools/mapping/picture/point_raster.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr Rgb kPaper{252, 252, 250}, kInk{40, 40, 46}, kGrid{222, 222, 218}, kBar{70, 120, 170}, kMean{200, 80, 30}, kMedian{20, 20, 24},
@@ -194,4 +194,4 @@ ColorImage draw_cloud_view(const Evaluation& evaluation, const PointCloud& cloud
   return raster.image();
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

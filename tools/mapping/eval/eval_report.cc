@@ -7,7 +7,7 @@
 
 #include "tools/common/text_format.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -165,4 +165,4 @@ std::string format_json(const EvalSummary& s) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

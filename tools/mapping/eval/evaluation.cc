@@ -11,7 +11,7 @@
 #include "tools/common/text_format.h"
 #include "tools/mapping/eval/eval_warnings.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using tools::text_of;
@@ -295,4 +295,4 @@ Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOp
   return result;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

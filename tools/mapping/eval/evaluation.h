@@ -19,7 +19,7 @@
 #include "tools/mapping/cloud/point_cloud.h"
 #include "tools/mapping/site/point_pairs.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 enum class AlignStart { kAuto, kPoints, kTrajectory, kDatum, kNone, kSearch };
 
@@ -86,4 +86,4 @@ struct Evaluation {
 /// Name of a start, as in the report.
 [[nodiscard]] const char* describe(AlignStart start);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -9,7 +9,7 @@
 
 #include "tools/mapping/picture/map_scene.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr Rgb kBackground{252, 252, 250}, kInk{40, 40, 46}, kSoftInk{110, 112, 120}, kFrame{222, 222, 218};
@@ -331,4 +331,4 @@ ColorImage draw_map(const MapPicture& picture, MapPanel panel, int width_px) {
   return image;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -13,7 +13,7 @@
 #include "tools/mapping/picture/point_raster.h"
 #include "tools/mapping/picture/weak_places.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 enum class MapPanel { kTop, kPerspective, kCoverage, kAll };
 
@@ -30,4 +30,4 @@ struct MapPicture {
 /// The sheet, `width_px` wide and as high as it needs. width_px from 400 to 8000.
 [[nodiscard]] ColorImage draw_map(const MapPicture& picture, MapPanel panel, int width_px);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -10,7 +10,7 @@
 #include "core/base/order_statistics.h"
 #include "tools/mapping/site/map_up.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 /// Along an axis: landmarks from the 1st to the 99th percentile, and everything that was walked.
@@ -110,4 +110,4 @@ Viewpoint top_view(const Plan& plan, int width, int height, int margin_px) {
   return view;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

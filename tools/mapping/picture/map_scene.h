@@ -13,7 +13,7 @@
 #include "tools/mapping/picture/map_picture.h"
 #include "tools/mapping/picture/point_raster.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 inline constexpr double kCutAboveCamerasM = 0.6;  ///< landmarks higher above the highest keyframe hide the floor plan
 
@@ -47,4 +47,4 @@ struct Plan {
 [[nodiscard]] Plan make_plan(const Scene& scene);
 [[nodiscard]] Viewpoint top_view(const Plan& plan, int width, int height, int margin_px);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

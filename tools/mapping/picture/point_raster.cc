@@ -10,7 +10,7 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr double kNearM = 0.05;          // perspective: what is closer to the eye is not drawn
@@ -208,4 +208,4 @@ double lightness_of(Rgb color) {
   return y > 216.0 / 24389 ? 116 * std::cbrt(y) - 16 : y * 24389 / 27;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -15,7 +15,7 @@
 #include "core/geometry/rigid3.h"
 #include "core/io/image_file.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
@@ -74,4 +74,4 @@ class PointRaster {
 /// CIE lightness L* of a screen colour, 0 (black) to 100 (white).
 [[nodiscard]] double lightness_of(Rgb color);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -9,7 +9,7 @@
 
 #include "tools/mapping/picture/point_raster.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::size_t kMaxSamples = 20000;  // enough for percentiles, and a cloud of millions costs nothing
@@ -144,4 +144,4 @@ Viewpoint fit_perspective_view(std::span<const Eigen::Vector3d> points, const Ei
   return view;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -11,7 +11,7 @@
 #include "core/base/order_statistics.h"
 #include "tools/mapping/site/consensus.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr double kMaxTiltCosine = 0.87;  ///< 30 degrees: cameras look up and down
@@ -127,4 +127,4 @@ std::string check_up(const Rigid3& T_wcs_map, const Eigen::Vector3d& up_map) {
          "Poses will be given in its axes";
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -8,7 +8,7 @@
 #include <map>
 #include <random>
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::size_t kMaxTriples = 5000;
@@ -131,4 +131,4 @@ Consensus find_consensus(std::span<const PointPair> pairs, double tolerance_m) {
   return search.result();
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -10,7 +10,7 @@
 
 #include "tools/mapping/site/control_points.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 /// Squared distance from the mean over variance and degree of freedom, above which sightings contradict each other.
@@ -155,4 +155,4 @@ std::vector<ObservedPoint> average_sightings(const std::vector<PointSighting>& s
   return points;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

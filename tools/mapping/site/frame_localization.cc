@@ -9,7 +9,7 @@
 #include "drivers/frame_source.h"
 #include "tools/common/frame_reading.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::uint64_t kRunUpFrames = 10;
@@ -62,4 +62,4 @@ Result<Frames> localize_frames(const MapView& map, const RgbdCamera& camera, con
   return frames;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

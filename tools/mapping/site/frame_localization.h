@@ -14,7 +14,7 @@
 #include "core/map/map_view.h"
 #include "tools/mapping/site/control_points.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 /// What one frame had to say. Errors are reasons for people.
 struct LocalizedFrame {
@@ -29,4 +29,4 @@ struct LocalizedFrame {
                                                                               const std::vector<ControlObservation>& observations,
                                                                               const std::function<bool()>& should_stop);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

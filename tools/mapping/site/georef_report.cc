@@ -8,7 +8,7 @@
 
 #include "tools/common/text_format.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -164,4 +164,4 @@ std::string format_json(const GeorefSummary& s) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <optional>
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 double extent_along(int axis, const std::vector<Eigen::Vector3d>& landmarks, const MapView& map) {
@@ -77,4 +77,4 @@ Eigen::Vector3d up_axis(const MapView& map) {
   return image_top < 0 ? Eigen::Vector3d(-axis) : axis;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping
