@@ -11,6 +11,8 @@
 #include <limits>
 #include <sstream>
 
+#include "tests/base/recording_observer.h"
+
 namespace camloc::mapping {
 namespace {
 
@@ -261,8 +263,11 @@ TEST(CloudFile, StopsWhenAskedTo) {
   std::string text;
   for (int i = 0; i < 200000; ++i) text += "1.25 2.25 3.25\n";
   std::istringstream stream(text);
-  int num_calls = 0;
-  const auto cloud = read_cloud(stream, "a.xyz", {}, [&](std::uint64_t, std::uint64_t) { return ++num_calls < 2; });
+  testing::RecordingObserver observer(2);
+  const auto cloud = read_cloud(stream, "a.xyz", {}, observer);
+  ASSERT_EQ(observer.steps.size(), 2U);
+  EXPECT_EQ(observer.steps[0].what, "reading the cloud: 0 of 3 MB");
+  EXPECT_EQ(observer.steps[1].what, "reading the cloud: 1 of 3 MB");
   expect_error(cloud, ErrorCode::kIo, "interrupted");
 }
 

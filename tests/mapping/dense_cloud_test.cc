@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/io/image_writer.h"
+#include "tests/base/recording_observer.h"
 #include "tests/tools/command_runner.h"
 
 namespace camloc::mapping {
@@ -103,17 +104,17 @@ TEST(DenseCloud, FusesARecordingWhosePosesAreOfTheDepthCamera) {
   ASSERT_TRUE(frames.is_ok()) << frames.status().message();
   DenseCloudOptions options;
   options.min_points = 1;
-  std::uint64_t num_calls = 0;
-  const auto cloud =
-      fuse_dense_cloud(frames.value(), camera, options, [&](std::uint64_t, std::uint64_t total) { return ++num_calls, total == 4; });
+  testing::RecordingObserver observer, stops(1);
+  const auto cloud = fuse_dense_cloud(frames.value(), camera, options, observer);
   ASSERT_TRUE(cloud.is_ok()) << cloud.status().message();
-  EXPECT_EQ(num_calls, 4U);
+  EXPECT_EQ(observer.steps.size(), 4U);
+  EXPECT_EQ(observer.steps.back().what, "fusing depth images: 4 of 4");
   EXPECT_GT(cloud.value().points_m.size(), 3000U);
   for (const Eigen::Vector3f& relative : cloud.value().points_m) {
     const double z = cloud.value().origin_m.z() + static_cast<double>(relative.z());
     EXPECT_NEAR(z, z < 1.5 ? 1 : 2, 0.002);
   }
-  const auto stopped = fuse_dense_cloud(frames.value(), camera, options, [](std::uint64_t, std::uint64_t) { return false; });
+  const auto stopped = fuse_dense_cloud(frames.value(), camera, options, stops);
   EXPECT_EQ(stopped.status().code(), ErrorCode::kIo);
 }
 

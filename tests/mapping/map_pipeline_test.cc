@@ -11,6 +11,7 @@
 #include "core/geometry/alignment.h"
 #include "core/io/sequence.h"
 #include "core/map/map_view.h"
+#include "tests/base/recording_observer.h"
 #include "tests/drivers/test_folder.h"
 #include "tests/mapping/recorded_room.h"
 #include "tools/mapping/build/view_log.h"
@@ -32,12 +33,7 @@ BuildRequest request_for(const std::string& sequence, const std::string& map_pat
   return request;
 }
 
-Status build(const BuildRequest& request, BuildSummary* summary) {
-  ::testing::internal::CaptureStderr();
-  const Status status = build_map(request, summary);
-  ::testing::internal::GetCapturedStderr();
-  return status;
-}
+Status build(const BuildRequest& request, BuildSummary* summary) { return build_map(request, WorkObserver::nobody(), summary); }
 
 TEST(MapPipeline, AWalkBecomesAMapAndATrajectory) {
   const TestFolder folder;
@@ -54,7 +50,7 @@ TEST(MapPipeline, AWalkBecomesAMapAndATrajectory) {
   EXPECT_EQ(summary.slam->counts.num_views, kFrames);
   EXPECT_EQ(summary.slam->counts.num_lost, 0U);
   EXPECT_EQ(summary.slam->num_resumed, 0U);
-  EXPECT_TRUE(summary.cubes.empty());
+  EXPECT_TRUE(summary.submaps.empty());
   EXPECT_EQ(summary.build.num_frames, kFrames);
   EXPECT_GT(summary.build.num_landmarks, 200U);
   EXPECT_TRUE(std::filesystem::exists(folder / "room.cmap"));
@@ -91,9 +87,7 @@ std::vector<std::uint8_t> whole_log(const TestFolder& folder, const BuildRequest
   walk.log_path = folder / "whole.views";
   Slam slam(walk.camera, walk.slam);
   WalkCheck check(walk.camera);
-  ::testing::internal::CaptureStderr();
-  const auto end = track_walk(walk, &slam, &check);
-  ::testing::internal::GetCapturedStderr();
+  const auto end = track_walk(walk, &slam, &check, WorkObserver::nobody());
   EXPECT_TRUE(end.is_ok()) << end.status().message();
   return bytes_of(walk.log_path);
 }
@@ -122,6 +116,52 @@ TEST(MapPipeline, AnInterruptedBuildGoesOnToTheSameBytes) {
     EXPECT_EQ(bytes_of(folder / "resumed.cmap"), expected) << share;
     EXPECT_FALSE(std::filesystem::exists(folder / "resumed.cmap.views"));
   }
+}
+
+TEST(MapPipeline, AStoppedBuildIsAMapOfTheFirstPartAndGoesOnFromThere) {
+  const TestFolder folder;
+  record_room(folder / "walk", kFrames);
+  BuildRequest request = request_for(folder / "walk", folder / "whole.cmap");
+  BuildSummary summary;
+  testing::RecordingObserver all, half(kFrames / 2);
+  ASSERT_TRUE(build_map(request, all, &summary).is_ok());
+  EXPECT_EQ(all.count("frame"), kFrames);
+  EXPECT_EQ(all.count("mapping view"), kFrames);
+  EXPECT_EQ(all.count("comparing maps of half of the sightings each ..."), 1U);
+  EXPECT_TRUE(all.is_monotone());
+
+  request.map_path = folder / "half.cmap";
+  BuildSummary of_half;
+  const Status built = build_map(request, half, &of_half);
+  ASSERT_TRUE(built.is_ok()) << built.message();
+  EXPECT_TRUE(of_half.is_partial);
+  EXPECT_EQ(of_half.build.num_frames, kFrames / 2);
+  EXPECT_TRUE(MapView::open(request.map_path).is_ok());
+  request.is_resumed = true;
+  ASSERT_TRUE(build(request, &of_half).is_ok());
+  EXPECT_EQ(bytes_of(request.map_path), bytes_of(folder / "whole.cmap"));
+}
+
+TEST(MapPipeline, AStoppedBuildFromPosesLeavesTheOldMap) {
+  const TestFolder folder;
+  record_room(folder / "walk", 8);
+  std::vector<StampedPose> poses;
+  std::string text;
+  for (std::uint64_t i = 0; i < 8; ++i)
+    text += format_tum_line(100'000'000'000 + static_cast<std::int64_t>(i * 66'666'667), room_pose(i)) + "\n";
+  BuildRequest request = request_for(folder / "walk", folder.write("room.cmap", "old"));
+  request.frames.poses = folder.write("poses.tum", text);
+  BuildSummary summary;
+  testing::RecordingObserver all, three(3);
+  const Status stopped = build_map(request, three, &summary);
+  EXPECT_EQ(stopped.code(), ErrorCode::kIo);
+  EXPECT_NE(stopped.message().find("interrupted"), std::string::npos) << stopped.message();
+  EXPECT_EQ(bytes_of(request.map_path).size(), 3U);
+  EXPECT_EQ(three.steps.size(), 3U);
+  ASSERT_TRUE(build_map(request, all, &summary).is_ok());
+  EXPECT_EQ(all.count("frame"), 8U);
+  EXPECT_TRUE(all.is_monotone());
+  EXPECT_TRUE(MapView::open(request.map_path).is_ok());
 }
 
 TEST(MapPipeline, TheLogOfAnotherBuildIsRefusedAndKept) {
@@ -184,11 +224,11 @@ TEST(MapPipeline, SegmentsThatDoNotMeetAreMapsOfTheirOwn) {
   BuildSummary summary;
   const Status built = build(request, &summary);
   ASSERT_TRUE(built.is_ok()) << built.message();
-  ASSERT_EQ(summary.cubes.size(), 1U);
-  EXPECT_EQ(summary.cubes[0].map_path, folder / "room.2.cmap");
+  ASSERT_EQ(summary.submaps.size(), 1U);
+  EXPECT_EQ(summary.submaps[0].map_path, folder / "room.2.cmap");
   EXPECT_TRUE(std::filesystem::exists(folder / "room.2.cmap"));
   EXPECT_EQ(summary.slam->counts.num_segments, 2U);
-  EXPECT_EQ(summary.build.num_frames + summary.cubes[0].num_views + summary.slam->counts.num_lost, 70U);
+  EXPECT_EQ(summary.build.num_frames + summary.submaps[0].num_views + summary.slam->counts.num_lost, 70U);
 }
 
 TEST(FindFrames, CountsAndSelects) {

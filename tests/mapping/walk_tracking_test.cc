@@ -6,11 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include <csignal>
-
+#include "tests/base/recording_observer.h"
 #include "tests/drivers/test_folder.h"
 #include "tests/mapping/recorded_room.h"
-#include "tools/common/interrupt.h"
 #include "tools/mapping/build/view_log.h"
 
 namespace camloc::mapping {
@@ -25,12 +23,10 @@ WalkRequest request_for(const TestFolder& folder) {
   return request;
 }
 
-Result<WalkEnd> track(const WalkRequest& request, SlamCounts* counts = nullptr, bool is_interrupted = false) {
-  const tools::InterruptGuard guard;
-  if (is_interrupted) std::raise(SIGINT);
+Result<WalkEnd> track(const WalkRequest& request, SlamCounts* counts = nullptr, WorkObserver& observer = WorkObserver::nobody()) {
   Slam slam(request.camera, request.slam);
   WalkCheck check(request.camera);
-  auto end = track_walk(request, &slam, &check);
+  auto end = track_walk(request, &slam, &check, observer);
   if (counts != nullptr) *counts = slam.counts();
   return end;
 }
@@ -40,9 +36,13 @@ TEST(WalkTracking, EveryViewIsTrackedAndLogged) {
   record_room(folder / "walk", 12);
   const WalkRequest request = request_for(folder);
   SlamCounts counts;
-  const auto end = track(request, &counts);
+  testing::RecordingObserver observer;
+  const auto end = track(request, &counts, observer);
   ASSERT_TRUE(end.is_ok()) << end.status().message();
   EXPECT_FALSE(end->is_interrupted);
+  EXPECT_EQ(observer.count("frame"), 12U);
+  EXPECT_TRUE(observer.is_monotone());
+  EXPECT_NE(observer.steps.back().note.find(std::to_string(counts.num_keyframes) + " keyframes"), std::string::npos);
   EXPECT_EQ(counts.num_views, 12U);
   EXPECT_EQ(counts.num_lost, 0U);
   EXPECT_EQ(end->surfaces.size(), counts.num_keyframes);
@@ -82,7 +82,8 @@ TEST(WalkTracking, AnInterruptWhileTheLogIsReadKeepsTheLog) {
   ASSERT_TRUE(track(request).is_ok());
   const auto log = bytes_of(request.log_path);
   request.is_resumed = true;
-  const auto end = track(request, nullptr, true);
+  testing::RecordingObserver stops_at_once(0);
+  const auto end = track(request, nullptr, stops_at_once);
   ASSERT_TRUE(end.is_ok());
   EXPECT_TRUE(end->is_interrupted);
   EXPECT_EQ(bytes_of(request.log_path), log);

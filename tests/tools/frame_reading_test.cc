@@ -30,6 +30,14 @@ class ScriptedSource final : public FrameSource {
 
 Status broken(const std::string& what) { return {ErrorCode::kCorrupt, what}; }
 
+/// Stops the reading after so many frames.
+struct Stopper final : WorkObserver {
+  Stopper(const std::vector<std::uint64_t>* seen, std::size_t max) : frames(seen), max_frames(max) {}
+  bool should_stop() const override { return frames->size() >= max_frames; }
+  const std::vector<std::uint64_t>* frames;
+  std::size_t max_frames;
+};
+
 struct Read {
   Result<FrameCounts> counts;
   std::vector<std::uint64_t> frames;
@@ -44,7 +52,7 @@ Read read(std::vector<Status> script, std::size_t max_frames = 100) {
         frames.push_back(frame.sequence);
         return Status::ok();
       },
-      [&] { return frames.size() >= max_frames; });
+      Stopper(&frames, max_frames));
   return {std::move(counts), frames};
 }
 

@@ -12,6 +12,7 @@
 #include "tools/camloc-map/commands.h"
 #include "tools/common/command_line.h"
 #include "tools/common/output_path.h"
+#include "tools/common/terminal_observer.h"
 #include "tools/mapping/build/build_report.h"
 #include "tools/mapping/build/map_pipeline.h"
 
@@ -56,6 +57,11 @@ Status check_arguments(const BuildArguments& arguments) {
   return Status::ok();
 }
 
+Status build(const BuildRequest& request, BuildSummary* summary) {
+  tools::TerminalObserver observer;
+  return build_map(request, observer, summary);
+}
+
 int run(BuildArguments arguments) {
   BuildRequest& request = arguments.request;
   const auto camera = read_camera_file(arguments.camera_path);
@@ -65,7 +71,7 @@ int run(BuildArguments arguments) {
   request.slam.use_depth_in_adjustment = arguments.adjustment == "depth";
   request.slam.use_depth_in_tracking = arguments.tracking == "depth";
   BuildSummary summary;
-  if (const Status built = build_map(request, &summary); !built.is_ok()) {
+  if (const Status built = build(request, &summary); !built.is_ok()) {
     return report_error(built, built.code() == ErrorCode::kInvalid ? 2 : 1);
   }
   if (summary.reading.num_corrupt > 0) {

@@ -14,8 +14,8 @@
 #include "core/map/map_writer.h"
 #include "tools/camloc-map/commands.h"
 #include "tools/common/command_line.h"
-#include "tools/common/interrupt.h"
 #include "tools/common/output_path.h"
+#include "tools/common/terminal_observer.h"
 #include "tools/mapping/site/control_points.h"
 #include "tools/mapping/site/frame_localization.h"
 #include "tools/mapping/site/georef_fit.h"
@@ -23,8 +23,6 @@
 
 namespace camloc::mapping {
 namespace {
-
-using tools::InterruptGuard;
 
 constexpr const char* kFooter =
     "Points file, coordinates of the site in metres:   name x y z [sigma_m]        (sigma 0.01 when not given)\n"
@@ -83,8 +81,8 @@ Result<ResolvedObservations> resolve(const GeorefArguments& arguments, const Map
     const Result<RgbdCamera> read = read_camera_file(arguments.camera_path);
     if (!read) return read.status();
     camera = *read;
-    const InterruptGuard guard;
-    auto localized = localize_frames(map, camera, arguments.sequence_url, observations, InterruptGuard::is_interrupted);
+    const tools::TerminalObserver observer;
+    auto localized = localize_frames(map, camera, arguments.sequence_url, observations, observer);
     if (!localized) return localized.status();
     frames = std::move(localized).value();
   }

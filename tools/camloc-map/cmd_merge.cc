@@ -8,8 +8,8 @@
 
 #include "core/map/map_unpack.h"
 #include "tools/camloc-map/commands.h"
-#include "tools/common/interrupt.h"
 #include "tools/common/output_path.h"
+#include "tools/common/terminal_observer.h"
 #include "tools/mapping/build/merge_pipeline.h"
 
 namespace camloc::mapping {
@@ -38,8 +38,8 @@ Status merge_files(const MergeArguments& arguments, MergeSummary* summary) {
   const MapData second = unpack_map(b.value());
   if (b.value().is_damaged()) return {ErrorCode::kCorrupt, arguments.second + ": could not be read to its end; was it changed meanwhile?"};
   summary->map_b = arguments.second;
-  const tools::InterruptGuard guard;
-  const Status merged = merge_into(arguments.first, second, arguments.options, arguments.map_path, summary);
+  tools::TerminalObserver observer;
+  const Status merged = merge_into(arguments.first, second, arguments.options, arguments.map_path, observer, summary);
   if (merged.code() == ErrorCode::kUnavailable) {
     const bool is_there = std::filesystem::exists(arguments.map_path);
     return {ErrorCode::kIo, "interrupted; " + arguments.map_path + (is_there ? " is unchanged" : " was not written")};

@@ -8,9 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/camloc/commands.h"
-#include "tools/common/interrupt.h"
 #include "tools/common/output_path.h"
-#include "tools/common/progress_line.h"
+#include "tools/common/terminal_observer.h"
 #include "tools/common/trajectory_file.h"
 #include "tools/evaluation/sequence_run.h"
 
@@ -136,18 +135,19 @@ Status localize(const LocalizeArguments& arguments) {
   if (!run) return run.status();
 
   RunLog log;
-  const InterruptGuard guard;
+  TerminalObserver observer;
   const auto counts = [&] {
-    ProgressLine progress(run->source->info().num_frames.value_or(0));
+    const std::uint64_t num_frames = run->source->info().num_frames.value_or(0);
     std::uint64_t num_done = 0;
     return read_perturbed_frames(
         *run,
         [&](const Frame& frame) {
           log.add(run->localizer->process(frame), !arguments.json_path.empty());
-          progress.show(++num_done, std::to_string(log.trajectory.poses.size()) + " localized");
+          observer.show("frame", ++num_done, num_frames, std::to_string(log.trajectory.poses.size()) + " localized");
         },
-        InterruptGuard::is_interrupted);
+        observer);
   }();
+  observer.show("", 0, 0, "");  // the summary takes its place
   if (!counts) return counts.status();
   if (Status status = write_results(arguments, *run, *counts, &log); !status) return status;
   if (InterruptGuard::is_interrupted()) {

@@ -67,7 +67,7 @@ Result<SequenceRun> open_sequence_run(const SequenceRunOptions& options) {
 }
 
 Result<FrameCounts> read_perturbed_frames(SequenceRun& run, const std::function<void(const Frame&)>& on_frame,
-                                          const std::function<bool()>& should_stop) {
+                                          const WorkObserver& observer) {
   auto counts = read_frames(
       *run.source,
       [&](FrameBuffer& frame) {
@@ -75,7 +75,7 @@ Result<FrameCounts> read_perturbed_frames(SequenceRun& run, const std::function<
         on_frame(frame.view());
         return Status::ok();
       },
-      should_stop);
+      observer);
   if (counts && counts->are_all_corrupt()) return all_frames_corrupt(*counts);
   return counts;
 }

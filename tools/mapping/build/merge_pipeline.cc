@@ -3,51 +3,22 @@
 #include "tools/mapping/build/merge_pipeline.h"
 
 #include <chrono>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "core/map/map_writer.h"
-#include "tools/common/interrupt.h"
-#include "tools/common/progress_line.h"
 #include "tools/common/text_format.h"
 
 namespace camloc::mapping {
-namespace {
-
 using tools::append_text;
 using tools::degrees;
-using tools::InterruptGuard;
-using tools::ProgressLine;
-
-/// A bar for each thing that is done.
-class MergeProgressLine {
- public:
-  bool show(const std::string& what, std::uint64_t done, std::uint64_t total) {
-    if (!line_ || what != what_) line_ = std::make_unique<ProgressLine>(total, what);
-    what_ = what;
-    if (total == 0)
-      line_->say(what + " ...");
-    else
-      line_->show(done);
-    return !InterruptGuard::is_interrupted();
-  }
-
- private:
-  std::string what_;
-  std::unique_ptr<ProgressLine> line_;
-};
-
-}  // namespace
 
 Status merge_into(const std::string& map_a, const MapData& b, const MapMergeOptions& options, const std::string& map_path,
-                  MergeSummary* summary) {
+                  WorkObserver& observer, MergeSummary* summary) {
   const auto start = std::chrono::steady_clock::now();
   const auto a = MapView::open(map_a);
   if (!a.is_ok()) return a.status();
   summary->map_a = map_a;
-  MergeProgressLine line;
-  const auto progress = [&line](const std::string& what, std::uint64_t done, std::uint64_t total) { return line.show(what, done, total); };
-  const auto merged = merge_maps(a.value(), b, options, progress, &summary->report);
+  const auto merged = merge_maps(a.value(), b, options, observer, &summary->report);
   if (!merged.is_ok()) return merged.status();
   if (a.value().is_damaged()) return {ErrorCode::kCorrupt, map_a + ": could not be read to its end; was it changed meanwhile?"};
   if (const Status written = write_map(merged.value(), map_path); !written.is_ok()) return written;

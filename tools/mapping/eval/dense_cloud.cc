@@ -40,14 +40,15 @@ void add_depth_image(const RgbdCamera& camera, ImageView<std::uint16_t> depth, c
 }
 
 Result<PointCloud> fuse_dense_cloud(const PosedFrames& frames, const RgbdCamera& camera, const DenseCloudOptions& options,
-                                    const FrameProgress& progress) {
+                                    WorkObserver& observer) {
   auto source = open_frame_source(frames.url);
   if (!source.is_ok()) return source.status();
   CloudAccumulator accumulator({options.voxel_m, 1, options.min_points});
   const Intrinsics& lens = camera.is_depth_registered ? camera.color : camera.depth;
   std::uint64_t done = 0;
   const auto add = [&](FrameBuffer& buffer) -> Status {
-    if (progress && !progress(++done, frames.T_map_camera_of_frame.size()))
+    if (!observer.on_progress("fusing depth images: " + std::to_string(++done) + " of " +
+                              std::to_string(frames.T_map_camera_of_frame.size())))
       return {ErrorCode::kIo, "interrupted while fusing depth images"};
     const auto pose = frames.T_map_camera_of_frame.find(buffer.sequence);
     const bool is_usable = buffer.depth.width == lens.width && buffer.depth.height == lens.height;

@@ -5,11 +5,11 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 
 #include "core/base/frame.h"
 #include "core/base/result.h"
+#include "core/base/work_observer.h"
 #include "core/geometry/camera.h"
 #include "tools/mapping/build/posed_frames.h"
 #include "tools/mapping/cloud/point_cloud.h"
@@ -23,13 +23,10 @@ struct DenseCloudOptions {
   std::uint32_t min_points = 3;  ///< a voxel with fewer is a flying pixel
 };
 
-/// Called with every frame that could be read; false stops.
-using FrameProgress = std::function<bool(std::uint64_t done, std::uint64_t total)>;
-
 /// Depth pixels at depth edges are left out. Points are in the frame of the poses. Errors: of opening the recording; kInvalid
 /// when no depth is left; kIo when stopped. Broken frames are skipped.
 [[nodiscard]] Result<PointCloud> fuse_dense_cloud(const PosedFrames& frames, const RgbdCamera& camera, const DenseCloudOptions& options,
-                                                  const FrameProgress& progress = {});
+                                                  WorkObserver& observer = WorkObserver::nobody());
 
 /// The points of one depth image in the frame of T_world_camera (the colour camera's pose).
 void add_depth_image(const RgbdCamera& camera, ImageView<std::uint16_t> depth, const Rigid3& T_world_camera,

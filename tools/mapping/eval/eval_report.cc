@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/common/text_format.h"
+#include "tools/mapping/eval/eval_warnings.h"
 
 namespace camloc::mapping {
 namespace {
@@ -135,7 +136,7 @@ std::string format_table(const EvalSummary& s) {
   append_scale(s.evaluation, &text);
   for (const std::string& file : s.files) append_text(&text, "%-22s%s\n", "written", file.c_str());
   append_text(&text, "%-22s%.1f s\n", "time", s.seconds);
-  for (const std::string& warning : s.evaluation.warnings) append_text(&text, "WARNING %s\n", warning.c_str());
+  for (const std::string& warning : warnings_of(s.evaluation)) append_text(&text, "WARNING %s\n", warning.c_str());
   return text;
 }
 
@@ -160,7 +161,7 @@ std::string format_json(const EvalSummary& s) {
                    {"map_extent_m", to_json(d.map_extent_m)},
                    {"cloud_extent_m", to_json(d.cloud_extent_m)},
                    {"volume_ratio", d.volume_ratio()}};
-  json["warnings"] = e.warnings;
+  json["warnings"] = warnings_of(e);
   json["files"] = s.files;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

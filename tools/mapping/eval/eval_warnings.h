@@ -11,8 +11,7 @@
 
 namespace camloc::mapping {
 
-/// One line each, that begins with a word in capitals: SCALE, VOLUME, POINTS, START, OVERLAP, SLIDING, ICP. `evaluation` is
-/// complete but for its warnings.
+/// One line each, that begins with a word in capitals: SCALE, VOLUME, POINTS, START, OVERLAP, SLIDING, ICP.
 [[nodiscard]] std::vector<std::string> warnings_of(const Evaluation& evaluation);
 
 }  // namespace camloc::mapping

@@ -9,7 +9,6 @@
 
 #include "core/geometry/alignment.h"
 #include "tools/common/text_format.h"
-#include "tools/mapping/eval/eval_warnings.h"
 
 namespace camloc::mapping {
 namespace {
@@ -239,9 +238,7 @@ const char* describe(AlignStart start) {
   return "";
 }
 
-Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOptions& options,
-                                const std::function<bool(const std::string&)>& say) {
-  const auto is_stopped = [&](const char* stage) { return say && !say(stage); };
+Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOptions& options, WorkObserver& observer) {
   const Status stopped(ErrorCode::kIo, "interrupted");
   const MapPoints points = points_of(*input.map, options.min_observations);
   if (const Status checked = check_points(*input.map, points, options.min_observations); !checked.is_ok()) return checked;
@@ -251,15 +248,15 @@ Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOp
   result.num_used = points.landmarks.size();
   result.num_keyframes = points.T_map_keyframe.size();
 
-  if (is_stopped("indexing the cloud ...")) return stopped;
+  if (!observer.on_progress("indexing the cloud ...")) return stopped;
   CloudIndex cloud(input.cloud->points_m);
-  if (is_stopped("looking for a start ...")) return stopped;
+  if (!observer.on_progress("looking for a start ...")) return stopped;
   result.start = choose_start(input, options.start);
   const auto start = find_start(input, points, options, &cloud, &result);
   if (!start.is_ok()) return start.status();
   Rigid3 T_cloud_map = start.value();
   if (options.has_icp) {
-    if (is_stopped("aligning ...")) return stopped;
+    if (!observer.on_progress("aligning ...")) return stopped;
     const auto refined = refine(points, T_cloud_map, options, result.start, &cloud);
     if (!refined.is_ok()) {
       return {ErrorCode::kNotFound,
@@ -268,10 +265,10 @@ Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOp
     result.registration = refined.value();
     T_cloud_map = refined.value().T_cloud_map.rigid;
   }
-  if (is_stopped("checking the scale ...")) return stopped;
+  if (!observer.on_progress("checking the scale ...")) return stopped;
   check_scale(input, points, T_cloud_map, options, &cloud, &result);
 
-  if (is_stopped("measuring distances ...")) return stopped;
+  if (!observer.on_progress("measuring distances ...")) return stopped;
   for (const Eigen::Vector3d& p : points.landmarks) result.landmarks_m.push_back(T_cloud_map * p);
   for (const Rigid3& T : points.T_map_keyframe) {
     result.T_cloud_keyframe.push_back(T_cloud_map * T);
@@ -291,7 +288,6 @@ Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOp
                                  static_cast<double>(points.landmarks.size());
   result.moved_m = (T_cloud_map * center - start.value() * center).norm();
   result.moved_rad = rotation_distance_rad(T_cloud_map.rotation, start.value().rotation);
-  result.warnings = warnings_of(result);
   return result;
 }
 

@@ -31,7 +31,7 @@ Result<PoseWithCovariance> pose_of(const Localization& localization) {
 }  // namespace
 
 Result<Frames> localize_frames(const MapView& map, const RgbdCamera& camera, const std::string& sequence_url,
-                               const std::vector<ControlObservation>& observations, const std::function<bool()>& should_stop) {
+                               const std::vector<ControlObservation>& observations, const WorkObserver& observer) {
   std::set<std::uint64_t> wanted;
   for (const ControlObservation& observation : observations) {
     if (observation.kind == ObservationKind::kPixel) wanted.insert(observation.frame);
@@ -56,9 +56,9 @@ Result<Frames> localize_frames(const MapView& map, const RgbdCamera& camera, con
     }
     return Status::ok();
   };
-  const auto counts = tools::read_frames(*source.value(), localize, should_stop);
+  const auto counts = tools::read_frames(*source.value(), localize, observer);
   if (!counts) return counts.status();
-  if (should_stop()) return Status(ErrorCode::kIo, "interrupted; nothing was written");
+  if (observer.should_stop()) return Status(ErrorCode::kIo, "interrupted; nothing was written");
   return frames;
 }
 
