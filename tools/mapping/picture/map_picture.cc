@@ -7,8 +7,6 @@
 #include <cstdio>
 #include <cstring>
 
-#include "tools/mapping/picture/map_scene.h"
-
 namespace camloc::mapping {
 namespace {
 

@@ -13,6 +13,8 @@
 namespace camloc::mapping {
 namespace {
 
+constexpr double kCutAboveCamerasM = 0.6;  // landmarks higher above the highest keyframe hide the floor plan
+
 /// Along an axis: landmarks from the 1st to the 99th percentile, and everything that was walked.
 Extent extent_along(const Scene& scene, const Eigen::Vector3d& axis) {
   Extent extent{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
