@@ -41,7 +41,7 @@ TEST(Distances, SeparatePointAndSurface) {
   // 4 cm above the floor, in the middle between four points.
   std::vector<Eigen::Vector3d> landmarks;
   for (int i = 50; i < 450; ++i) landmarks.emplace_back(0.02 * i + 0.01, 0.02 * (500 - i) + 0.01, 0.04);
-  const CloudDistances d = measure_distances(landmarks, {}, &cloud, {});
+  const CloudDistances d = measure_distances(landmarks, {}, &cloud, 0.5);
   EXPECT_NEAR(d.point.mean_m, std::sqrt(0.04 * 0.04 + 2 * 0.01 * 0.01), 1e-5);
   EXPECT_NEAR(d.plane.mean_m, 0.04, 1e-5);
   EXPECT_EQ(d.point.share_3cm, 0);
@@ -54,7 +54,7 @@ TEST(Distances, KeepWhatIsOutsideApart) {
   CloudIndex cloud(cloud_m);
   std::vector<Eigen::Vector3d> landmarks(9, Eigen::Vector3d(5, 5, 0.01));
   landmarks.emplace_back(5, 5, 3);
-  const CloudDistances d = measure_distances(landmarks, {}, &cloud, {});
+  const CloudDistances d = measure_distances(landmarks, {}, &cloud, 0.5);
   EXPECT_EQ(d.num_outside, 1U);
   EXPECT_EQ(d.point.count, 9U);
   EXPECT_NEAR(d.point.mean_m, 0.01, 1e-4);
@@ -72,14 +72,12 @@ TEST(Distances, CountCoverageWhereTheMapIs) {
   for (double x = 0; x < 5; x += 0.1)
     for (double y = 0; y < 10; y += 0.1) landmarks.emplace_back(x, y, 0);
   for (double y = 0; y < 10; y += 0.02) landmarks.emplace_back(10, y, 0);
-  CloudDistances d = measure_distances(landmarks, {}, &cloud, {});
+  CloudDistances d = measure_distances(landmarks, {}, &cloud, 0.5);
   EXPECT_NEAR(static_cast<double>(d.num_cells), 1600, 90);
   EXPECT_NEAR(static_cast<double>(d.num_covered) / static_cast<double>(d.num_cells), 0.54, 0.03);
   EXPECT_GT(d.cells.max_m, 2);
   // Only what a camera was near to can be expected.
-  DistanceOptions options;
-  options.view_range_m = 2;
-  d = measure_distances(landmarks, std::vector<Eigen::Vector3d>{{2, 5, 1}}, &cloud, options);
+  d = measure_distances(landmarks, std::vector<Eigen::Vector3d>{{2, 5, std::sqrt(5 * 5 - 3)}}, &cloud, 0.5);  // 5 m reach a disc
   EXPECT_EQ(d.num_covered, d.num_cells);
   EXPECT_NEAR(static_cast<double>(d.num_cells), M_PI * 3 * 16, 15);
 }
@@ -89,7 +87,7 @@ TEST(Distances, ShowACollapsedMapByItsVolumeAndCoverage) {
   CloudIndex cloud(flat.cloud_m);
   std::vector<Eigen::Vector3d> collapsed;  // all on one corner of the room: each landmark is on the cloud
   for (const auto& p : flat.landmarks_m) collapsed.push_back(0.001 * p);
-  const CloudDistances good = measure_distances(flat.landmarks_m, {}, &cloud, {}), bad = measure_distances(collapsed, {}, &cloud, {});
+  const CloudDistances good = measure_distances(flat.landmarks_m, {}, &cloud, 0.5), bad = measure_distances(collapsed, {}, &cloud, 0.5);
   EXPECT_LT(bad.point.mean_m, 0.03);
   EXPECT_LT(bad.volume_ratio(), 1e-4);
   EXPECT_NEAR(good.volume_ratio(), 1, 0.1);

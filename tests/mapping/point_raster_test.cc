@@ -9,6 +9,8 @@
 #include <limits>
 #include <random>
 
+#include "tests/mapping/lightness.h"
+
 namespace camloc::mapping {
 namespace {
 

@@ -10,6 +10,7 @@
 #include "core/io/image_file.h"
 #include "core/io/sequence.h"
 #include "tests/map/room_map.h"
+#include "tests/mapping/lightness.h"
 #include "tools/camloc-map/commands.h"
 #include "tools/common/command_line.h"
 #include "tools/mapping/colmap/colmap_model.h"

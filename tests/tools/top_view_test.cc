@@ -15,10 +15,10 @@ TEST(TopViewTest, DrawsTruthAndEstimate) {
   const TemporaryFolder folder;
   TopView view;
   for (int i = 0; i < 20; ++i) view.truth.push_back(at(0.2 * i, 0.1 * i, 0));
-  ASSERT_TRUE(write_top_view(view, folder / "truth.png", 400).is_ok());
+  ASSERT_TRUE(write_top_view(view, folder / "truth.png").is_ok());
   view.estimate = {at(1, 1, 0), at(2, 0.5, 0)};
   view.error_m = {0.01, 0.4};
-  ASSERT_TRUE(write_top_view(view, folder / "both.png", 400).is_ok());
+  ASSERT_TRUE(write_top_view(view, folder / "both.png").is_ok());
   EXPECT_GT(std::filesystem::file_size(folder / "both.png"), 1000U);
   std::ifstream truth(folder / "truth.png", std::ios::binary), both(folder / "both.png", std::ios::binary);
   EXPECT_NE(std::string(std::istreambuf_iterator<char>(truth), {}), std::string(std::istreambuf_iterator<char>(both), {}));

@@ -15,7 +15,6 @@
 #include "drivers/frame_source.h"
 #include "drivers/source_url.h"
 #include "tools/camloc-bench/opencv_reference.h"
-#include "tools/camloc/commands.h"
 #include "tools/common/command_line.h"
 #include "tools/evaluation/sequence_run.h"
 #include "tools/evaluation/trajectory_error.h"
@@ -221,5 +220,5 @@ int main(int argc, char** argv) {
   bool is_over = false;
   if (const int usage = camloc::tools::parse_command_line(app, argc, argv, &is_over); is_over) return usage;
   arguments.run.is_single = arguments.mode == "single";
-  return camloc::tools::report(bench(arguments));
+  return camloc::tools::report("camloc", bench(arguments));
 }

@@ -71,9 +71,7 @@ int run(BuildArguments arguments) {
   request.slam.use_depth_in_adjustment = arguments.adjustment == "depth";
   request.slam.use_depth_in_tracking = arguments.tracking == "depth";
   BuildSummary summary;
-  if (const Status built = build(request, &summary); !built.is_ok()) {
-    return report_error(built, built.code() == ErrorCode::kInvalid ? 2 : 1);
-  }
+  if (const Status built = build(request, &summary); !built.is_ok()) { return report(built); }
   if (summary.reading.num_corrupt > 0) {
     tools::print_error("camloc-map", std::to_string(summary.reading.num_corrupt) + " of " + std::to_string(summary.num_selected) +
                                          " frames left out because they could not be read, the first: " + summary.reading.first_corrupt);
@@ -83,7 +81,7 @@ int run(BuildArguments arguments) {
                                          "; the map was written without site coordinates, 'camloc map georef' adds them");
   }
   const std::string text = arguments.is_json ? format_json(summary) : format_table(summary);
-  const bool is_printed = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+  const bool is_printed = tools::print_text(text);
   const bool is_complete = !summary.survey || summary.survey->is_written;
   return is_printed && is_complete ? 0 : 1;
 }

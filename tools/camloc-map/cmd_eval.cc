@@ -81,9 +81,7 @@ Result<PointCloud> load_reference(EvalArguments arguments, std::vector<PosePair>
   arguments.reference.include = "::" + std::to_string(arguments.frame_step);
   const auto frames = find_posed_frames(arguments.reference, camera.value());
   if (!frames.is_ok()) return frames.status();
-  DenseCloudOptions options;
-  options.voxel_m = arguments.voxel_m;
-  return fuse_dense_cloud(frames.value(), camera.value(), options, observer);
+  return fuse_dense_cloud(frames.value(), camera.value(), arguments.voxel_m, observer);
 }
 
 Status write_files(const EvalArguments& arguments, const PointCloud& cloud, EvalSummary* summary) {
@@ -187,7 +185,7 @@ int run(const EvalArguments& arguments) {
   EvalSummary summary;
   if (const Status done = evaluate(arguments, map.value(), &summary); !done.is_ok()) return report_error(done, exit_code_of(done));
   const std::string text = arguments.is_json ? format_json(summary) : format_table(summary);
-  return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0 ? 0 : 1;
+  return tools::print_text(text) ? 0 : 1;
 }
 
 void add_reference_options(CLI::App* command, EvalArguments* arguments) {

@@ -37,13 +37,11 @@ Status check_outputs(const ExportArguments& arguments) {
   return Status::ok();
 }
 
-Status write_text(const std::string& path, const std::string& text) { return replace_file(path, std::as_bytes(std::span(text))); }
-
 Status write_exports(const MapView& map, const ExportArguments& arguments) {
   const ExportOptions& options = arguments.options;
   const auto count = [](std::size_t n) { return static_cast<unsigned long long>(n); };
   if (!arguments.ply_path.empty()) {
-    if (const Status written = write_text(arguments.ply_path, format_ply(map, options)); !written.is_ok()) return written;
+    if (const Status written = tools::write_text_file(arguments.ply_path, format_ply(map, options)); !written.is_ok()) return written;
     std::printf("%s: %llu landmarks\n", arguments.ply_path.c_str(), count(map.landmarks().size()));
   }
   if (!arguments.colmap_folder.empty()) {
@@ -56,7 +54,7 @@ Status write_exports(const MapView& map, const ExportArguments& arguments) {
                 count(model.points.size()), count(num_observations));
   }
   if (!arguments.tum_path.empty()) {
-    if (const Status written = write_text(arguments.tum_path, format_tum(map, options)); !written.is_ok()) return written;
+    if (const Status written = tools::write_text_file(arguments.tum_path, format_tum(map, options)); !written.is_ok()) return written;
     std::printf("%s: %llu keyframes\n", arguments.tum_path.c_str(), count(map.keyframes().size()));
   }
   return std::fflush(stdout) == 0 ? Status::ok() : Status(ErrorCode::kIo, "cannot write to standard output");
@@ -68,8 +66,7 @@ int run(const ExportArguments& arguments) {
   if (!map.is_ok()) return report_error(map.status(), 1);
   if (const Status possible = check_export(map.value(), arguments.options); !possible.is_ok()) return report_error(possible, 2);
   const Status written = write_exports(map.value(), arguments);
-  if (!written.is_ok()) return report_error(written, written.code() == ErrorCode::kInvalid ? 2 : 1);
-  return 0;
+  return report(written);
 }
 
 }  // namespace

@@ -150,11 +150,9 @@ int run(const GeorefArguments& arguments) {
   summary.observed_path = arguments.observed_path;
   summary.out_path = arguments.out_path.empty() ? arguments.map_path : arguments.out_path;
   if (const Status output = tools::check_output_path("--out", summary.out_path); !output) return report_error(output, 2);
-  if (const Status status = georef(arguments, &summary); !status) {
-    return report_error(status, status.code() == ErrorCode::kInvalid ? 2 : 1);
-  }
+  if (const Status status = georef(arguments, &summary); !status) { return report(status); }
   const std::string text = arguments.is_json ? format_json(summary) : format_table(summary);
-  const bool is_printed = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+  const bool is_printed = tools::print_text(text);
   if (!summary.fit.problem.empty()) {
     return report_error({ErrorCode::kInvalid, arguments.points_path + ": " + summary.fit.problem + "; no datum was written"}, 1);
   }

@@ -50,10 +50,9 @@ Status merge_files(const MergeArguments& arguments, MergeSummary* summary) {
 int run(const MergeArguments& arguments) {
   if (const Status output = tools::check_output_path("--out", arguments.map_path); !output.is_ok()) return report_error(output, 2);
   MergeSummary summary;
-  if (const Status merged = merge_files(arguments, &summary); !merged.is_ok())
-    return report_error(merged, merged.code() == ErrorCode::kInvalid ? 2 : 1);
+  if (const Status merged = merge_files(arguments, &summary); !merged.is_ok()) return report(merged);
   const std::string text = arguments.is_json ? format_json(summary) : format_table(summary);
-  return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0 ? 0 : 1;
+  return tools::print_text(text) ? 0 : 1;
 }
 
 }  // namespace

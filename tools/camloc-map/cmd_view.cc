@@ -39,7 +39,7 @@ Status show(const MapView& map, const ViewArguments& arguments) {
   const ColorImage image = draw_map(picture, arguments.panel, arguments.width_px);
   if (const Status written = write_png(arguments.png_path, image); !written.is_ok()) return written;
   const std::string table = format_places(map, picture.places, picture.weak);
-  const bool is_said = std::fputs(table.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+  const bool is_said = tools::print_text(table);
   return is_said ? Status::ok() : Status(ErrorCode::kIo, "cannot write to standard output");
 }
 

@@ -44,4 +44,12 @@ void print_error(const std::string& program, const std::string& message) {
   std::fprintf(stderr, "%s: %s\n", program.c_str(), line.c_str());
 }
 
+int report(const std::string& program, const Status& status) {
+  if (status.is_ok()) return 0;
+  print_error(program, status.message());
+  return status.code() == ErrorCode::kInvalid ? 2 : 1;
+}
+
+bool print_text(const std::string& text) { return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0; }
+
 }  // namespace camloc::tools

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/order_statistics.h"
+#include "tools/common/map_points.h"
 #include "tools/common/text_format.h"
 
 namespace camloc::tools {
@@ -62,11 +63,7 @@ MapSketch::MapSketch(const std::vector<Eigen::Vector2d>& landmarks, const std::v
 
 MapSketch MapSketch::of(const MapView& map, int max_columns, int max_rows) {
   std::vector<Eigen::Vector2d> landmarks, keyframes;
-  for (const auto& cube : map.cubes()) {
-    for (const auto& landmark : map.landmarks().subspan(cube.first_landmark, cube.num_landmarks)) {
-      landmarks.emplace_back(MapView::position_m(cube, landmark).cast<double>().head<2>());
-    }
-  }
+  for (const Eigen::Vector3d& p : landmark_positions(map)) landmarks.emplace_back(p.head<2>());
   for (std::uint32_t k = 0; k < map.info().num_keyframes; ++k) keyframes.emplace_back(map.keyframe_pose(k).translation.head<2>());
   return MapSketch(landmarks, keyframes, max_columns, max_rows);
 }

@@ -13,8 +13,7 @@
 
 namespace camloc::mapping {
 
-/// Points in the colour camera's frame, metres, on a grid of `columns` x `rows` over the depth image, where there is depth.
-[[nodiscard]] std::vector<Eigen::Vector3f> sample_surface(const RgbdCamera& camera, ImageView<std::uint16_t> depth, int columns = 20,
-                                                          int rows = 15);
+/// Points in the colour camera's frame, metres, on a grid of 20 x 15 over the depth image, where there is depth.
+[[nodiscard]] std::vector<Eigen::Vector3f> sample_surface(const RgbdCamera& camera, ImageView<std::uint16_t> depth);
 
 }  // namespace camloc::mapping

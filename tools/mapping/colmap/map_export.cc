@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "core/io/sequence.h"
+#include "tools/common/map_points.h"
 #include "tools/mapping/picture/point_raster.h"
 #include "tools/mapping/site/map_up.h"
 
@@ -109,7 +110,7 @@ std::string describe_export(const MapView& map, const ExportOptions& options) {
 }
 
 std::string format_ply(const MapView& map, const ExportOptions& options) {
-  const std::vector<Eigen::Vector3d> positions = landmark_positions(map);
+  const std::vector<Eigen::Vector3d> positions = tools::landmark_positions(map);
   const std::vector<Rgb> colors = landmark_colors(map, positions, options.coloring);
   const Rigid3 T_out = T_out_map(map, options);
   std::string bytes = ply_header(map, options);
@@ -132,7 +133,7 @@ std::string format_ply(const MapView& map, const ExportOptions& options) {
 }
 
 ColmapModel make_colmap_model(const MapView& map, const ExportOptions& options) {
-  const std::vector<Eigen::Vector3d> positions = landmark_positions(map);
+  const std::vector<Eigen::Vector3d> positions = tools::landmark_positions(map);
   const std::vector<Rgb> colors = landmark_colors(map, positions, options.coloring);
   const Rigid3 T_out = T_out_map(map, options);
   ColmapModel model;

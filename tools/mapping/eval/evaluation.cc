@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/geometry/alignment.h"
+#include "tools/common/map_points.h"
 #include "tools/common/text_format.h"
 
 namespace camloc::mapping {
@@ -26,13 +27,7 @@ struct MapPoints {
 };
 
 MapPoints points_of(const MapView& map, std::uint32_t min_observations) {
-  MapPoints points;
-  for (const auto& cube : map.cubes()) {
-    for (const auto& landmark : map.landmarks().subspan(cube.first_landmark, cube.num_landmarks)) {
-      if (landmark.num_observations < min_observations) continue;
-      points.landmarks.push_back(MapView::position_m(cube, landmark).cast<double>());
-    }
-  }
+  MapPoints points{tools::landmark_positions(map, min_observations), {}};
   for (std::uint32_t i = 0; i < map.keyframes().size(); ++i) points.T_map_keyframe.push_back(map.keyframe_pose(i));
   return points;
 }
@@ -274,9 +269,8 @@ Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOp
     result.T_cloud_keyframe.push_back(T_cloud_map * T);
     result.keyframes_m.push_back(result.T_cloud_keyframe.back().translation);
   }
-  DistanceOptions distance = options.distance;
-  distance.max_distance_m = result.max_distance_m = options.max_distance_m;
-  result.distances = measure_distances(result.landmarks_m, result.keyframes_m, &cloud, distance);
+  result.max_distance_m = options.max_distance_m;
+  result.distances = measure_distances(result.landmarks_m, result.keyframes_m, &cloud, options.max_distance_m);
   measure_residuals(input, T_cloud_map, &result);
   const auto absolute = [&](Rigid3 T) {
     T.translation += input.cloud->origin_m;

@@ -29,7 +29,6 @@ struct EvaluationOptions {
   double trim = 0.9;
   double max_distance_m = 0.5;
   std::uint32_t min_observations = 2;
-  DistanceOptions distance;  ///< its max_distance_m is not used
 };
 
 /// The same camera at the same moment, in the map and in the frame of the cloud.

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/base/order_statistics.h"
+#include "tools/common/map_points.h"
 #include "tools/mapping/site/map_up.h"
 
 namespace camloc::mapping {
@@ -61,7 +62,7 @@ Scene make_scene(const MapPicture& picture) {
   }
   for (const Rigid3& pose : picture.trajectory) scene.walk.push_back(pose.translation);
   std::vector<double> heights;
-  for (const Eigen::Vector3d& p : landmark_positions(map)) {
+  for (const Eigen::Vector3d& p : tools::landmark_positions(map)) {
     const double height = scene.up.dot(p);
     scene.is_cut = scene.is_cut || height > cut_m;
     if (height > cut_m) continue;

@@ -46,8 +46,6 @@ std::vector<Eigen::Vector2i> disc(double radius_px) {
   return offsets;
 }
 
-double to_linear_light(double srgb) { return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4); }
-
 std::uint8_t to_srgb_byte(double linear) {
   const double clipped = std::clamp(linear, 0.0, 1.0);
   const double srgb = clipped <= 0.0031308 ? 12.92 * clipped : 1.055 * std::pow(clipped, 1 / 2.4) - 0.055;
@@ -200,12 +198,6 @@ void PointRaster::add_legend(int u, int v, int width, const std::string& low, co
 std::span<const Rgb> value_ramp() {
   static const std::array<Rgb, 256> ramp = make_value_ramp();
   return ramp;
-}
-
-double lightness_of(Rgb color) {
-  const double y =
-      0.2126 * to_linear_light(color[0] / 255.0) + 0.7152 * to_linear_light(color[1] / 255.0) + 0.0722 * to_linear_light(color[2] / 255.0);
-  return y > 216.0 / 24389 ? 116 * std::cbrt(y) - 16 : y * 24389 / 27;
 }
 
 }  // namespace camloc::mapping

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "tools/common/map_points.h"
+
 namespace camloc::mapping {
 namespace {
 
@@ -24,7 +26,7 @@ double extent_along(int axis, const std::vector<Eigen::Vector3d>& landmarks, con
 }
 
 Eigen::Vector3d flattest_axis(const MapView& map) {
-  const std::vector<Eigen::Vector3d> landmarks = landmark_positions(map);
+  const std::vector<Eigen::Vector3d> landmarks = tools::landmark_positions(map);
   int flat = 0;
   double smallest = extent_along(0, landmarks, map);
   for (int axis = 1; axis < 3; ++axis) {
@@ -56,17 +58,6 @@ std::optional<Eigen::Vector3d> upright_axis(const MapView& map) {
 }
 
 }  // namespace
-
-std::vector<Eigen::Vector3d> landmark_positions(const MapView& map) {
-  std::vector<Eigen::Vector3d> points;
-  points.reserve(map.landmarks().size());
-  for (const auto& cube : map.cubes()) {
-    for (const auto& landmark : map.landmarks().subspan(cube.first_landmark, cube.num_landmarks)) {
-      points.push_back(MapView::position_m(cube, landmark).cast<double>());
-    }
-  }
-  return points;
-}
 
 Eigen::Vector3d up_axis(const MapView& map) {
   if (map.info().wcs) return map.info().wcs->T_wcs_map.rotation.conjugate() * Eigen::Vector3d::UnitZ();

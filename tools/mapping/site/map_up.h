@@ -5,7 +5,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "core/map/map_view.h"
 
@@ -16,8 +15,5 @@ namespace camloc::mapping {
 /// or an axis of `map` within 5 degrees of that; where the cameras turned too little or rolled, the axis of `map` along which
 /// landmarks (1st to 99th percentile) and keyframes extend least, which is what `camloc localize` draws along.
 [[nodiscard]] Eigen::Vector3d up_axis(const MapView& map);
-
-/// All landmarks of a map, metres in `map`.
-[[nodiscard]] std::vector<Eigen::Vector3d> landmark_positions(const MapView& map);
 
 }  // namespace camloc::mapping
