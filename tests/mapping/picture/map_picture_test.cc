@@ -1,41 +1,27 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The picture of a map shows what it should where it should, and the table names the places a person has to go to.
+// The picture of a map shows what it should where it should.
+#include "tools/mapping/picture/map_picture.h"
+
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <optional>
 
-#include "core/io/image_file.h"
-#include "core/io/sequence.h"
 #include "tests/map/room_map.h"
 #include "tests/mapping/lightness.h"
-#include "tools/camloc-map/commands.h"
-#include "tools/common/command_line.h"
-#include "tools/mapping/colmap/colmap_model.h"
-#include "tools/mapping/picture/map_picture.h"
 
 namespace camloc::mapping {
 namespace {
 
 using testing::make_room_map;
 
-class ViewTest : public ::testing::Test {
+class MapPictureTest : public ::testing::Test {
  protected:
   MapView open(const MapData& data) {
     const Status written = write_map(data, folder_.file("m.cmap"));
     EXPECT_TRUE(written.is_ok()) << written.message();
     return MapView::open(folder_.file("m.cmap")).value();
-  }
-  int run(const std::vector<const char*>& arguments) {
-    CLI::App app{"test", "camloc-map"};
-    int exit_code = 0;
-    add_view_command(app, exit_code);
-    add_export_command(app, exit_code);
-    bool is_over = false;
-    const int usage = tools::parse_command_line(app, static_cast<int>(arguments.size()), arguments.data(), &is_over);
-    return is_over ? usage : exit_code;
   }
   testing::TemporaryFolder folder_;
 };
@@ -77,7 +63,7 @@ MapPicture picture_of(const MapView& map, const std::vector<std::uint32_t>& weak
 
 constexpr int kMapPx = 900;  // of a coverage sheet 1600 px wide; right of it is the list
 
-TEST_F(ViewTest, CoverageShowsWhereItIsWeak) {
+TEST_F(MapPictureTest, CoverageShowsWhereItIsWeak) {
   const MapView map = open(make_room_map());
   const ColorImage fine = draw_map(picture_of(map, {}), MapPanel::kCoverage, 1600);
   EXPECT_EQ(fine.width, 1600);
@@ -96,7 +82,7 @@ TEST_F(ViewTest, CoverageShowsWhereItIsWeak) {
             find_color(right, color_of(FixOutlook::kLikely), kMapPx).mean.x() + 50);
 }
 
-TEST_F(ViewTest, AWedgeOpensTheWayTheCameraLooks) {
+TEST_F(MapPictureTest, AWedgeOpensTheWayTheCameraLooks) {
   MapData room = make_room_map({.num_keyframes = 2});
   room.keyframes[0].T_map_camera = testing::looking({0, 0, 1.5}, {1, 0, 0});
   room.keyframes[1].T_map_camera = testing::looking({0, 0, 1.5}, {0, 1, 0});
@@ -110,13 +96,13 @@ TEST_F(ViewTest, AWedgeOpensTheWayTheCameraLooks) {
   EXPECT_LT(up.mean.y(), right.mean.y() - 5);  // y goes up
 }
 
-TEST_F(ViewTest, ColorsCanBeToldApartInGrey) {
+TEST_F(MapPictureTest, ColorsCanBeToldApartInGrey) {
   const double likely = lightness_of(color_of(FixOutlook::kLikely)), again = lightness_of(color_of(FixOutlook::kScanAgain));
   EXPECT_GT(std::abs(likely - again), 30);
   EXPECT_GT(std::abs(lightness_of(color_of(FixOutlook::kLookAlike)) - again), 30);
 }
 
-TEST_F(ViewTest, EveryPanelIsDrawnInEveryWidth) {
+TEST_F(MapPictureTest, EveryPanelIsDrawnInEveryWidth) {
   const MapView map = open(make_room_map());
   for (const MapPanel panel : {MapPanel::kTop, MapPanel::kPerspective, MapPanel::kCoverage, MapPanel::kAll}) {
     for (const int width : {400, 801, 1600}) {
@@ -128,7 +114,7 @@ TEST_F(ViewTest, EveryPanelIsDrawnInEveryWidth) {
   }
 }
 
-TEST_F(ViewTest, AFarLandmarkDoesNotShrinkTheRoom) {
+TEST_F(MapPictureTest, AFarLandmarkDoesNotShrinkTheRoom) {
   MapData room = make_room_map();
   const Blob before = find_color(draw_map(picture_of(open(room), {}), MapPanel::kCoverage, 1600), color_of(FixOutlook::kLikely), kMapPx);
   room.landmarks[0].position_m = {400, 300, 1};
@@ -137,7 +123,7 @@ TEST_F(ViewTest, AFarLandmarkDoesNotShrinkTheRoom) {
   EXPECT_NEAR(after.mean.y(), before.mean.y(), 20);
 }
 
-TEST_F(ViewTest, AWalkIsDrawnAndItsBareStretchesStandOut) {
+TEST_F(MapPictureTest, AWalkIsDrawnAndItsBareStretchesStandOut) {
   const MapView map = open(make_room_map());
   MapPicture picture = picture_of(map, {});
   for (int i = 0; i <= 20; ++i) picture.trajectory.push_back({Eigen::Quaterniond::Identity(), {-1 + 0.08 * i, 0, 1.5}});
@@ -147,63 +133,6 @@ TEST_F(ViewTest, AWalkIsDrawnAndItsBareStretchesStandOut) {
   for (int i = 0; i <= 40; ++i) picture.trajectory.push_back({Eigen::Quaterniond::Identity(), {-1 - 0.1 * i, 0, 1.5}});
   const ColorImage far = draw_map(picture, MapPanel::kCoverage, 1600);
   EXPECT_GT(find_color(far, color_of(FixOutlook::kScanAgain), kMapPx).count, 100);
-}
-
-TEST_F(ViewTest, NeighboursAreOneWeakPlaceAndTheWorstComesFirst) {
-  const MapView map = open(make_room_map());
-  std::vector<KeyframeLocalizability> places(9);
-  for (const std::uint32_t k : {0U, 1U, 8U}) {
-    places[k].outlook = FixOutlook::kScanAgain;
-    places[k].weakness = FixWeakness::kFewLandmarks;
-    places[k].num_landmarks = 10 + k;
-    places[k].position_sigma_m = k == 8 ? 0.5 : 0.1 + 0.01 * k;
-  }
-  const auto weak = find_weak_places(map, places, 5);
-  ASSERT_EQ(weak.size(), 2U);
-  EXPECT_EQ(weak[0].keyframe, 8U);
-  EXPECT_EQ(weak[0].num_keyframes, 1U);
-  EXPECT_EQ(weak[1].keyframe, 1U);
-  EXPECT_EQ(weak[1].num_keyframes, 2U);
-  EXPECT_EQ(find_weak_places(map, places, 1).size(), 1U);
-  const std::string table = format_places(map, places, weak);
-  EXPECT_NE(table.find("66.7 %"), std::string::npos) << table;
-  EXPECT_NE(table.find("only 18 landmarks"), std::string::npos) << table;
-  EXPECT_NE(table.find("0.60      0.00      1.50"), std::string::npos) << table;
-}
-
-TEST_F(ViewTest, PositionsAreOfTheSiteWhereTheMapHasOne) {
-  const MapView map = open(make_room_map({.has_wcs = true}));
-  std::vector<KeyframeLocalizability> places(9);
-  places[0].outlook = FixOutlook::kLookAlike;
-  places[0].rival = RivalPlace{8, 0.4, 50, 45};
-  places[0].num_landmarks = 100;
-  const std::string table = format_places(map, places, find_weak_places(map, places, 5));
-  EXPECT_NE(table.find("site coordinates"), std::string::npos) << table;
-  EXPECT_NE(table.find("350012"), std::string::npos) << table;
-  EXPECT_NE(table.find("45 of 100 landmarks"), std::string::npos) << table;
-}
-
-TEST_F(ViewTest, CommandsWriteTheirFilesOrSayWhyNot) {
-  open(make_room_map());
-  const std::string map = folder_.file("m.cmap"), png = folder_.file("m.png"), ply = folder_.file("m.ply"), tum = folder_.file("m.tum"),
-                    model = folder_.file("model");
-  EXPECT_EQ(run({"camloc-map", "export", map.c_str(), "--ply", ply.c_str(), "--tum", tum.c_str(), "--colmap", model.c_str()}), 0);
-  EXPECT_TRUE(read_tum_trajectory(tum).is_ok());
-  EXPECT_TRUE(read_colmap_model(model).is_ok());
-  EXPECT_EQ(run({"camloc-map", "view", map.c_str(), "--png", png.c_str(), "--trajectory", tum.c_str(), "--width", "700"}), 0);
-  ImageReader reader;
-  const auto size = reader.read_size(png);
-  ASSERT_TRUE(size.is_ok());
-  EXPECT_EQ(size->width, 700);
-
-  const std::string nowhere = folder_.file("no/x.png");
-  EXPECT_EQ(run({"camloc-map", "view", map.c_str(), "--png", nowhere.c_str()}), 2);
-  EXPECT_EQ(run({"camloc-map", "view", map.c_str(), "--png", png.c_str(), "--width", "30"}), 2);
-  EXPECT_EQ(run({"camloc-map", "view", nowhere.c_str(), "--png", png.c_str()}), 1);
-  EXPECT_EQ(run({"camloc-map", "view", map.c_str(), "--png", png.c_str(), "--trajectory", nowhere.c_str()}), 1);
-  EXPECT_EQ(run({"camloc-map", "export", map.c_str()}), 2);
-  EXPECT_EQ(run({"camloc-map", "export", map.c_str(), "--ply", nowhere.c_str()}), 2);
-  EXPECT_EQ(run({"camloc-map", "export", map.c_str(), "--ply", ply.c_str(), "--wcs"}), 2);
 }
 
 }  // namespace

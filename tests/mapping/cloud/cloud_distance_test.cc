@@ -94,22 +94,5 @@ TEST(Distances, ShowACollapsedMapByItsVolumeAndCoverage) {
   EXPECT_GT(static_cast<double>(good.num_covered) / static_cast<double>(good.num_cells), 0.9);
 }
 
-TEST(CloudIndexTest, FindsNeighborsAndPlanes) {
-  const auto cloud_m = scanned_floor();
-  CloudIndex cloud(cloud_m);
-  const auto neighbor = cloud.nearest({5.004, 5.003, 0.3}, 10);
-  ASSERT_TRUE(neighbor);
-  EXPECT_NEAR((cloud_m[neighbor->index].cast<double>() - Eigen::Vector3d(5, 5, 0)).norm(), 0, 1e-5);
-  EXPECT_FALSE(cloud.nearest({5, 5, 0.3}, 0.29));
-  EXPECT_FALSE(cloud.nearest({std::nan(""), 0, 0}, 10));
-  EXPECT_TRUE(cloud.plane_at(neighbor->index).is_flat);
-  EXPECT_NEAR(std::abs(cloud.plane_at(neighbor->index).normal.z()), 1, 1e-6);
-  const std::vector<Eigen::Vector3f> none, one{{1, 2, 3}};
-  EXPECT_FALSE(CloudIndex(none).nearest({0, 0, 0}, 1e9));
-  CloudIndex single(one);
-  EXPECT_FALSE(single.plane_at(0).is_flat);
-  EXPECT_TRUE(single.plane_at(0).normal.allFinite());
-}
-
 }  // namespace
 }  // namespace camloc::mapping

@@ -6,10 +6,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "core/io/camera_file.h"
-#include "core/io/image_writer.h"
 #include "core/map/map_unpack.h"
 #include "tests/localize/sample_world.h"
+#include "tests/mapping/sample_recording.h"
 #include "tests/tools/command_runner.h"
 #include "tools/camloc-map/commands.h"
 
@@ -166,27 +165,6 @@ TEST(GeorefCommand, BadInputIsAUsageError) {
 
 // ---- pixels of a recording of the sample room
 
-/// Frames 0 .. 59 of the room's path as a TUM folder, and its camera file.
-struct Recording {
-  Recording() {
-    const SampleWorld& world = SampleWorld::get();
-    std::string rgb, depth;
-    for (std::uint64_t i = 0; i < 60; ++i) {
-      const FrameBuffer frame = world.frame(i);
-      const std::string stamp = number(static_cast<double>(frame.stamp_ns) * 1e-9), name = std::to_string(i) + ".png";
-      EXPECT_TRUE(write_png(folder / ("rgb" + name), frame.gray).is_ok());
-      EXPECT_TRUE(write_depth_png(folder / ("depth" + name), frame.depth).is_ok());
-      rgb += stamp + " rgb" + name + "\n";
-      depth += stamp + " depth" + name + "\n";
-    }
-    static_cast<void>(folder.write("rgb.txt", rgb));
-    static_cast<void>(folder.write("depth.txt", depth));
-    camera_path = folder.write("camera.toml", format_camera_toml(world.camera()));
-  }
-  TemporaryFolder folder;
-  std::string camera_path;
-};
-
 /// What the camera sees at a pixel, in the room.
 Eigen::Vector3d point_at(std::uint64_t frame, int u, int v) {
   const SampleWorld& world = SampleWorld::get();
@@ -196,7 +174,7 @@ Eigen::Vector3d point_at(std::uint64_t frame, int u, int v) {
 }
 
 TEST(GeorefCommand, PixelsOfARecordingBecomePointsOfTheMap) {
-  const Recording recording;
+  const SampleRecording recording(60);
   const TemporaryFolder folder;
   std::string points, observed;
   const struct {
@@ -231,7 +209,7 @@ TEST(GeorefCommand, PixelsOfARecordingBecomePointsOfTheMap) {
 }
 
 TEST(GeorefCommand, FramesOfAnotherPlaceAreLeftOut) {
-  const Recording recording;
+  const SampleRecording recording(60);
   const Site site;  // its map is no room at all
   std::ofstream(site.observed_path, std::ios::app) << "P1,pixel,10,100,100\n";
   const CommandOutput output = site.georef({"--sequence", recording.folder.path(), "--camera", recording.camera_path, "--dry-run"});

@@ -9,49 +9,16 @@
 #include <numbers>
 
 #include "core/io/sequence.h"
-#include "tests/map/room_map.h"
-#include "tests/mapping/scanned_flat.h"
+#include "tests/mapping/flat_map.h"
 #include "tests/tools/command_runner.h"
 #include "tools/camloc-map/commands.h"
 
 namespace camloc::mapping {
 namespace {
 
-using camloc::testing::looking;
-using camloc::testing::room_camera;
-using camloc::testing::room_landmark;
 using tools::CommandOutput;
 using tools::run_command;
 using tools::TemporaryFolder;
-
-const ScannedFlat& flat() {
-  static const ScannedFlat scanned(3);
-  return scanned;
-}
-
-Rigid3 camera_in_flat(int i) { return looking({1.5 + 0.8 * i, 2 + 0.1 * (i % 3), 1.5}, {std::cos(0.9 * i), std::sin(0.9 * i), 0}); }
-
-/// Landmarks of the flat, and keyframes in it, moved by T_map_flat and multiplied by `scale`.
-MapData map_of_flat(const Rigid3& T_map_flat, double scale = 1) {
-  Random random(11);
-  MapData map;
-  map.camera = room_camera();
-  for (const Eigen::Vector3d& p : flat().landmarks_m) {
-    map.landmarks.push_back(room_landmark(scale * (T_map_flat * p), T_map_flat.rotation * Eigen::Vector3d(0.1, 0.2, 1), &random));
-  }
-  for (std::uint32_t i = 0; i < 8; ++i) {
-    MapKeyframe keyframe;
-    keyframe.T_map_camera = T_map_flat * camera_in_flat(static_cast<int>(i));
-    keyframe.T_map_camera.translation *= scale;
-    for (std::uint32_t k = i; k < map.landmarks.size(); k += 8) keyframe.landmarks.push_back(k);
-    map.keyframes.push_back(std::move(keyframe));
-  }
-  std::vector<Descriptor> descriptors;
-  for (const MapLandmark& landmark : map.landmarks) descriptors.push_back(landmark.descriptors[0]);
-  map.words = train_vocabulary(descriptors, 32);
-  build_inverted_file(&map);
-  return map;
-}
 
 /// A binary PLY of the flat with double coordinates.
 std::string scan_of_flat(const Rigid3& T_cloud_flat, double unit_m = 1) {

@@ -3,6 +3,8 @@
 //
 // What is exported says the same as the map: PLY through a reader of its own, the COLMAP model by projecting its points with
 // COLMAP's rules, the trajectory through the reader for recordings.
+#include "tools/mapping/colmap/map_export.h"
+
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -11,8 +13,6 @@
 
 #include "core/io/sequence.h"
 #include "tests/map/room_map.h"
-#include "tools/mapping/colmap/map_export.h"
-#include "tools/mapping/site/map_up.h"
 
 namespace camloc::mapping {
 namespace {
@@ -161,19 +161,6 @@ TEST_F(ExportTest, ColmapPointsProjectOntoTheirObservations) {
   EXPECT_NEAR(static_cast<double>(num_seen), static_cast<double>(num_listed), 4);  // on the image border positions round
 }
 
-TEST_F(ExportTest, LensModelsHaveTheirColmapNames) {
-  Intrinsics lens{640, 480, 500, 501, 320, 240, LensModel::kBrownConrady, {0.1, -0.2, 0.001, 0.002, 0}};
-  EXPECT_EQ(to_colmap(lens, 1).model, "OPENCV");
-  EXPECT_EQ(to_colmap(lens, 1).parameters.size(), 8U);
-  lens.distortion[4] = 0.05;
-  const ColmapCamera full = to_colmap(lens, 1);
-  EXPECT_EQ(full.model, "FULL_OPENCV");
-  EXPECT_EQ(full.parameters, (std::vector<double>{500, 501, 320.5, 240.5, 0.1, -0.2, 0.001, 0.002, 0.05, 0, 0, 0}));
-  lens.lens = LensModel::kEquidistant;
-  EXPECT_EQ(to_colmap(lens, 1).model, "OPENCV_FISHEYE");
-  EXPECT_EQ(to_colmap(lens, 1).parameters.size(), 8U);
-}
-
 TEST_F(ExportTest, TrajectoryReadsBackAsKeyframes) {
   const MapView map = open(make_room_map({.has_wcs = true}));
   for (const bool use_wcs : {false, true}) {
@@ -197,24 +184,6 @@ TEST_F(ExportTest, ANameOfTheMapCannotBreakAHeader) {
   data.name = "a\nend_header\nb";
   const MapView map = open(data);
   EXPECT_EQ(read_ply(format_ply(map, {})).rows.size(), 360U);
-}
-
-TEST_F(ExportTest, UpIsAcrossTheImageRowsOfAMapThatLiesAskew) {
-  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.6, Eigen::Vector3d(1, 0.3, 0.1).normalized()));
-  MapData askew = make_room_map();
-  for (MapLandmark& landmark : askew.landmarks) landmark.position_m = (turn * landmark.position_m.cast<double>()).cast<float>();
-  for (MapKeyframe& keyframe : askew.keyframes) keyframe.T_map_camera = Rigid3{turn, {0, 0, 0}} * keyframe.T_map_camera;
-  EXPECT_LT((up_axis(open(askew)) - turn * Eigen::Vector3d::UnitZ()).norm(), 1e-3);
-}
-
-TEST_F(ExportTest, UpIsTheFlatAxisWhereCamerasDoNotTurnAndTheSitesZWhereThereIsOne) {
-  EXPECT_EQ(up_axis(open(make_room_map())), Eigen::Vector3d(0, 0, 1));
-  EXPECT_EQ(up_axis(open(make_room_map({.num_keyframes = 1}))), Eigen::Vector3d(0, 0, 1));
-  MapData turned = make_room_map();
-  turned.wcs.emplace();
-  turned.wcs->T_wcs_map.rotation = Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitX());
-  const MapView map = open(turned);
-  EXPECT_LT((turned.wcs->T_wcs_map.rotation * up_axis(map) - Eigen::Vector3d::UnitZ()).norm(), 1e-12);
 }
 
 }  // namespace

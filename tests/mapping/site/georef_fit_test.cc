@@ -274,17 +274,5 @@ TEST(MatchPoints, InTheOrderOfThePointsWithBothSigmas) {
   EXPECT_EQ(matched[1].name, "C");
 }
 
-TEST(ConsensusTest, IsDeterministicAlsoWhereItSamples) {
-  Survey survey = make_survey(60);
-  for (std::size_t i = 0; i < 60; i += 3) survey.points[i].pair.p_a.x() += 1 + 0.3 * static_cast<double>(i);
-  std::vector<PointPair> pairs;
-  for (const GeorefPoint& point : survey.points) pairs.push_back(point.pair);
-  const Consensus a = find_consensus(pairs, 0.1), b = find_consensus(pairs, 0.1);
-  EXPECT_EQ(a.is_inlier, b.is_inlier);
-  EXPECT_EQ(a.num_inliers, 40U);
-  EXPECT_FALSE(a.is_ambiguous);
-  EXPECT_TRUE(find_consensus({}, 0.1).is_inlier.empty());
-}
-
 }  // namespace
 }  // namespace camloc::mapping

@@ -231,40 +231,11 @@ TEST(MapPipeline, SegmentsThatDoNotMeetAreMapsOfTheirOwn) {
   EXPECT_EQ(summary.build.num_frames + summary.submaps[0].num_views + summary.slam->counts.num_lost, 70U);
 }
 
-TEST(FindFrames, CountsAndSelects) {
-  const TestFolder folder;
-  record_room(folder / "walk", 10);
-  PosedFramesRequest request;
-  request.sequence = "replay://" + (folder / "walk");
-  auto frames = find_frames(request);
-  ASSERT_TRUE(frames.is_ok()) << frames.status().message();
-  EXPECT_EQ(frames->num_recorded, 10U);
-  EXPECT_EQ(frames->num_selected, 10U);
-  EXPECT_TRUE(frames->has_depth);
-  EXPECT_EQ(frames->url, "replay://" + (folder / "walk") + "?frames=0:10:1");
-  request.include = "2:9:3";
-  request.exclude = "5";
-  frames = find_frames(request);
-  ASSERT_TRUE(frames.is_ok()) << frames.status().message();
-  EXPECT_EQ(frames->num_selected, 2U);
-  for (const char* sequence : {"telepathy://x", "replay:///nowhere?loop=1", "/nowhere"}) {
-    request.sequence = sequence;
-    const auto refused = find_frames(request);
-    ASSERT_FALSE(refused.is_ok()) << sequence;
-    EXPECT_NE(refused.status().message().find(std::string(sequence).substr(0, 8)), std::string::npos) << refused.status().message();
-  }
-}
-
-TEST(FindFrames, SaysWhetherThereIsDepth) {
+TEST(MapPipeline, WithoutDepthThereIsNoMap) {
   const TestFolder folder;
   record_room(folder / "walk", 3);
   std::filesystem::remove(folder / "walk/depth.txt");
   std::filesystem::remove_all(folder / "walk/depth");
-  PosedFramesRequest request;
-  request.sequence = folder / "walk";
-  const auto frames = find_frames(request);
-  ASSERT_TRUE(frames.is_ok()) << frames.status().message();
-  EXPECT_FALSE(frames->has_depth);
   BuildSummary summary;
   const Status status = build(request_for(folder / "walk", folder / "room.cmap"), &summary);
   EXPECT_EQ(status.code(), ErrorCode::kInvalid);
