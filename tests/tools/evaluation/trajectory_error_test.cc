@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 #include <random>
 
@@ -84,6 +85,33 @@ TEST(TrajectoryErrorTest, HonestCovariancesGiveHonestNees) {
   EXPECT_EQ(e.num_with_covariance, 2000U);
   EXPECT_NEAR(e.nees_mean, expected_sum / 2000, 1e-6);
   EXPECT_GT(e.share_inside_95, 0.95);  // only half of the six directions were disturbed
+}
+
+// 3, 4 and 12 units: the mean square is 169 / 3.
+TEST(TrajectoryErrorTest, TheRootMeanSquareIsWhatItSays) {
+  EXPECT_NEAR(compare(off_by({0.03, 0.04, 0.12}), reference, 3).translation_m.rmse, 0.13 / std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(compare(off_by({0.5}), reference, 1).translation_m.rmse, 0.5, 1e-12);
+  EstimatedTrajectory turned = off_by({0, 0});
+  for (const double deg : {6.0, 8.0})
+    turned.poses[deg == 6 ? 0 : 1].T_map_camera.rotation *=
+        Eigen::Quaterniond(Eigen::AngleAxisd(deg * std::numbers::pi / 180, Eigen::Vector3d::UnitX()));
+  EXPECT_NEAR(compare(turned, reference, 2).rotation_deg.rmse, std::sqrt(50.0), 1e-6);
+}
+
+// The estimate lives in a frame turned by 90 degrees: its uncertain x is the reference's y.
+TEST(TrajectoryErrorTest, TheCovarianceIsTurnedWithTheAlignment) {
+  const Rigid3 T_reference_estimate{Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ())), {1, 2, 3}};
+  EstimatedTrajectory estimate = off_by({0});
+  EstimatedPose& pose = estimate.poses[0];
+  Rigid3 off = truth_at(0);
+  off.translation.y() += 0.2;  // along y of the reference
+  pose.T_map_camera = T_reference_estimate.inverse() * off;
+  Matrix6d covariance = Matrix6d::Identity() * 1e-4;
+  covariance(0, 0) = 0.04;  // 20 cm along x of the estimate
+  pose.covariance = covariance;
+  const TrajectoryErrors e = compare(estimate, reference, 1, T_reference_estimate);
+  EXPECT_NEAR(e.nees_mean, 1, 1e-6);
+  EXPECT_EQ(e.share_inside_95, 1);
 }
 
 TEST(TrajectoryErrorTest, NothingToCompare) {

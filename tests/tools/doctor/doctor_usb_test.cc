@@ -1,29 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Every cause that `camloc doctor` knows, present and absent, on machines that the test makes up.
-#include "tools/doctor/doctor_checks.h"
-
+// What can be wrong with a camera on USB, present and absent, on machines that the test makes up.
 #include <unistd.h>
 
 #include <filesystem>
 
-#include "tests/tools/command_runner.h"
+#include "tests/tools/expect_check.h"
 #include "tests/tools/fake_usb.h"
+#include "tools/doctor/doctor_checks.h"
 
 namespace camloc::tools {
 namespace {
 
 const FakeUsbDevice kKinect{0x045e, 0x02ae, 5};
 const FakeUsbDevice kMotor{0x045e, 0x02b0, 4};
-
-void expect(const Check& check, Level level, const std::string& detail, const std::string& advice = "") {
-  EXPECT_EQ(check.level, level) << check.name << ": " << check.detail;
-  EXPECT_NE(check.detail.find(detail), std::string::npos) << check.name << ": " << check.detail;
-  EXPECT_NE(check.advice.find(advice), std::string::npos) << check.name << ": " << check.advice;
-  EXPECT_EQ(check.advice.empty(), level == Level::kOk) << check.name << ": " << check.advice;
-  EXPECT_EQ((check.detail + check.advice).find('\n'), std::string::npos);
-}
 
 TEST(DoctorUsbTest, PresenceAndPower) {
   FakeUsb usb;
@@ -103,62 +94,6 @@ TEST(DoctorUsbTest, Openni2FolderOfDrivers) {
   expect(check_openni2(openni2, "openni2"), Level::kFailure, "none of them has a device", "kinect://");
   openni2.devices = {{"1d27/0601@1/4", "PrimeSense", "Xtion", "1d27:0601"}};
   expect(check_openni2(openni2, "openni2"), Level::kOk, "1d27/0601@1/4");
-}
-
-TEST(DoctorSystemTest, ServiceStates) {
-  const std::string loaded = "LoadState=loaded\nUnitFileState=enabled\n";
-  expect(check_service(loaded + "ActiveState=active\nSubState=running\nResult=success\nNRestarts=0\n"), Level::kOk, "active");
-  expect(check_service(loaded + "ActiveState=active\nSubState=running\nNRestarts=3\n"), Level::kWarning, "3 restarts",
-         "journalctl -u camlocd");
-  expect(check_service(loaded + "ActiveState=failed\nSubState=failed\nResult=watchdog\n"), Level::kFailure, "watchdog", "journalctl");
-  expect(check_service(loaded + "ActiveState=activating\nSubState=auto-restart\nResult=exit-code\n"), Level::kFailure, "exit-code",
-         "journalctl");
-  expect(check_service(loaded + "ActiveState=activating\nSubState=start\n"), Level::kWarning, "starting", "journalctl");
-  expect(check_service(loaded + "ActiveState=inactive\nSubState=dead\n"), Level::kWarning, "inactive", "sudo systemctl start camlocd");
-  expect(check_service("LoadState=loaded\nUnitFileState=disabled\nActiveState=inactive\n"), Level::kWarning, "not enabled", "enable --now");
-  expect(check_service("LoadState=not-found\nActiveState=inactive\n"), Level::kWarning, "not installed", "apt install");
-  expect(check_service("LoadState=masked\nActiveState=inactive\n"), Level::kWarning, "masked", "unmask");
-  expect(check_service("Failed to connect to bus\n"), Level::kWarning, "systemctl", "systemd");
-}
-
-TEST(DoctorSystemTest, Clock) {
-  expect(check_clock({1'800'000'000, true}), Level::kOk, "2027-01-15 08:00:00 UTC, synchronized");
-  expect(check_clock({1'800'000'000, false}), Level::kWarning, "not synchronized", "timedatectl set-ntp true");
-  expect(check_clock({1000, false}), Level::kFailure, "1970-01-01", "timedatectl");
-  EXPECT_GT(read_clock().epoch_s, 1'600'000'000);
-}
-
-TEST(DoctorSystemTest, MemoryAndLcm) {
-  FakeUsb machine;
-  machine.write("/proc/meminfo", "MemTotal: 2000000 kB\nMemAvailable: 900000 kB\n");
-  expect(check_memory(machine.folders()), Level::kOk, "878 MiB");
-  machine.write("/proc/meminfo", "MemAvailable: 20000 kB\n");
-  expect(check_memory(machine.folders()), Level::kWarning, "19 MiB", "32 MiB");
-  expect(check_lcm("file://x"), Level::kOk, "no network");
-  expect(check_lcm("nonsense"), Level::kFailure, "nonsense", "publish.lcm_url");
-}
-
-TEST(DoctorSetupTest, CalibrationOfAnotherImageSize) {
-  const TemporaryFolder folder;
-  const std::string path = folder.write(
-      "c.toml",
-      "[color]\nwidth = 64\nheight = 48\nfx = 50.0\nfy = 50.0\ncx = 32.0\ncy = 24.0\nlens = \"pinhole\"\n[depth]\nregistered = true\n");
-  expect(check_calibration(path, std::nullopt, FrameSize{64, 48}), Level::kOk, path);
-  expect(check_calibration(path, std::nullopt, std::nullopt), Level::kOk, path);
-  expect(check_calibration(path, std::nullopt, FrameSize{640, 480}), Level::kFailure, "is for 64x48 pixels, the camera gives 640x480",
-         "camloc camera calibrate");
-  expect(check_calibration(folder / "none.toml", std::nullopt, std::nullopt), Level::kFailure, "none.toml", "set another");
-  const nlohmann::ordered_json answer{{"is_calibration_suspect", true}, {"focal_scale", 1.17}};
-  expect(check_calibration(path, answer, std::nullopt), Level::kWarning, "1.170 times", "calibrate");
-}
-
-TEST(DoctorSetupTest, SchemeOfTheSource) {
-  Settings settings;
-  EXPECT_EQ(settings.scheme(), "");
-  settings.source_url = "kinect://A00366A";
-  EXPECT_EQ(settings.scheme(), "kinect");
-  settings.source_url = "/data/walk";
-  EXPECT_EQ(settings.scheme(), "replay");
 }
 
 }  // namespace

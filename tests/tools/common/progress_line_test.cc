@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "tools/common/interrupt.h"
-
 namespace camloc::tools {
 namespace {
 
@@ -20,17 +18,6 @@ TEST(ProgressLineTest, IsSilentWhereThereIsNoTerminal) {
   ::testing::internal::CaptureStderr();
   { ProgressLine(3).show(3); }
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
-}
-
-TEST(InterruptGuardTest, ASignalSetsTheFlagAndANewGuardForgetsIt) {
-  {
-    const InterruptGuard guard;
-    EXPECT_FALSE(InterruptGuard::is_interrupted());
-    std::raise(SIGTERM);
-    EXPECT_TRUE(InterruptGuard::is_interrupted());
-  }
-  const InterruptGuard guard;
-  EXPECT_FALSE(InterruptGuard::is_interrupted());
 }
 
 }  // namespace
