@@ -10,10 +10,10 @@
 
 #include "core/io/camera_file.h"
 #include "core/io/image_writer.h"
+#include "core/io/replace_file.h"
 #include "core/io/sequence.h"
 #include "tools/camloc-map/commands.h"
 #include "tools/common/terminal_observer.h"
-#include "tools/common/trajectory_file.h"
 #include "tools/mapping/build/posed_frames.h"
 #include "tools/mapping/cloud/cloud_file.h"
 #include "tools/mapping/eval/dense_cloud.h"
@@ -104,7 +104,7 @@ Status write_files(const EvalArguments& arguments, const PointCloud& cloud, Eval
   }
   const std::string path = (folder / "evaluation.json").string();
   summary->files.push_back(path);
-  return tools::write_text_file(path, format_json(*summary));
+  return replace_file(path, format_json(*summary));
 }
 
 Status load_alignment(const EvalArguments& arguments, EvaluationInput* input) {

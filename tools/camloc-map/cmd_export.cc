@@ -41,7 +41,7 @@ Status write_exports(const MapView& map, const ExportArguments& arguments) {
   const ExportOptions& options = arguments.options;
   const auto count = [](std::size_t n) { return static_cast<unsigned long long>(n); };
   if (!arguments.ply_path.empty()) {
-    if (const Status written = tools::write_text_file(arguments.ply_path, format_ply(map, options)); !written.is_ok()) return written;
+    if (const Status written = replace_file(arguments.ply_path, format_ply(map, options)); !written.is_ok()) return written;
     std::printf("%s: %llu landmarks\n", arguments.ply_path.c_str(), count(map.landmarks().size()));
   }
   if (!arguments.colmap_folder.empty()) {
@@ -54,7 +54,7 @@ Status write_exports(const MapView& map, const ExportArguments& arguments) {
                 count(model.points.size()), count(num_observations));
   }
   if (!arguments.tum_path.empty()) {
-    if (const Status written = tools::write_text_file(arguments.tum_path, format_tum(map, options)); !written.is_ok()) return written;
+    if (const Status written = replace_file(arguments.tum_path, format_tum(map, options)); !written.is_ok()) return written;
     std::printf("%s: %llu keyframes\n", arguments.tum_path.c_str(), count(map.keyframes().size()));
   }
   return std::fflush(stdout) == 0 ? Status::ok() : Status(ErrorCode::kIo, "cannot write to standard output");

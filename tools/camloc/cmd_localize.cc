@@ -5,9 +5,10 @@
 #include <cstdio>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 
+#include "core/io/replace_file.h"
 #include "tools/camloc/commands.h"
+#include "tools/common/json_text.h"
 #include "tools/common/output_path.h"
 #include "tools/common/terminal_observer.h"
 #include "tools/common/trajectory_file.h"
@@ -15,8 +16,6 @@
 
 namespace camloc::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct LocalizeArguments {
   SequenceRunOptions run;
@@ -26,20 +25,7 @@ struct LocalizeArguments {
 
 Json pose_json(const Localization& result) {
   if (!result.has_pose) return nullptr;
-  const auto& t = result.T_map_camera.translation;
-  const auto& q = result.T_map_camera.rotation;
-  return {{"position_m", {t.x(), t.y(), t.z()}}, {"orientation_wxyz", {q.w(), q.x(), q.y(), q.z()}}};
-}
-
-Json covariance_json(const Localization& result) {
-  if (!result.has_pose) return nullptr;
-  Json rows = Json::array();
-  for (int row = 0; row < 6; ++row) {
-    Json values = Json::array();
-    for (int column = 0; column < 6; ++column) values.push_back(result.covariance(row, column));
-    rows.push_back(values);
-  }
-  return rows;
+  return {{"position_m", json_of(result.T_map_camera.translation)}, {"orientation_wxyz", json_of(result.T_map_camera.rotation)}};
 }
 
 Json latency_json(const Localization& result) {
@@ -56,7 +42,7 @@ Json record_json(const Localization& result) {
           {"state", to_string(result.state)},
           {"reason", to_string(result.reason)},
           {"pose", pose_json(result)},
-          {"covariance", covariance_json(result)},
+          {"covariance", result.has_pose ? json_of(result.covariance) : Json(nullptr)},
           {"quality", result.quality},
           {"tracked", result.is_tracked},
           {"features", result.num_features},
@@ -120,10 +106,9 @@ Status write_results(const LocalizeArguments& arguments, const SequenceRun& run,
   log->trajectory.num_frames = counts.num_frames;
   if (run.camera.poses_are_of_depth_camera) log->trajectory.T_color_depth = run.camera.T_color_depth;
   if (calibration.is_suspect) log->trajectory.suspect_focal_scale = calibration.focal_scale;
-  if (Status status = write_text_file(arguments.out_path, format_trajectory(log->trajectory)); !status) return status;
+  if (Status status = replace_file(arguments.out_path, format_trajectory(log->trajectory)); !status) return status;
   if (arguments.json_path.empty()) return Status::ok();
-  const std::string text = document_json(arguments, *log, counts, calibration).dump(1, ' ', false, Json::error_handler_t::replace);
-  return write_text_file(arguments.json_path, text + "\n");
+  return replace_file(arguments.json_path, json_text(document_json(arguments, *log, counts, calibration), 1));
 }
 
 Status localize(const LocalizeArguments& arguments) {

@@ -121,6 +121,4 @@ Result<EstimatedTrajectory> read_trajectory(const std::string& path) {
   return trajectory;
 }
 
-Status write_text_file(const std::string& path, const std::string& text) { return replace_file(path, std::as_bytes(std::span(text))); }
-
 }  // namespace camloc::tools

@@ -7,6 +7,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "core/base/order_statistics.h"
 #include "core/io/image_writer.h"
 #include "tools/common/map_points.h"
 
@@ -34,8 +35,7 @@ struct Projection {
 /// 1st and 99th percentile of a coordinate: a few far landmarks must not shrink the picture.
 std::pair<double, double> range_of(std::vector<double> values) {
   if (values.empty()) return {0, 1};
-  std::sort(values.begin(), values.end());
-  return {values[values.size() / 100], values[values.size() - 1 - values.size() / 100]};
+  return trimmed_range(std::move(values), 100);
 }
 
 Projection fit(const std::vector<Eigen::Vector3d>& landmarks, const std::vector<Rigid3>& truth, const std::vector<Rigid3>& estimate) {

@@ -4,6 +4,7 @@
 // Trajectories survive being written and read; damaged ones are named with their line.
 #include "tools/common/trajectory_file.h"
 
+#include "core/io/replace_file.h"
 #include "tests/tools/command_runner.h"
 
 namespace camloc::tools {
@@ -31,7 +32,7 @@ EstimatedTrajectory example() {
 TEST(TrajectoryFileTest, WhatIsWrittenIsRead) {
   const TemporaryFolder folder;
   const EstimatedTrajectory written = example();
-  ASSERT_TRUE(write_text_file(folder / "t.tum", format_trajectory(written)).is_ok());
+  ASSERT_TRUE(replace_file(folder / "t.tum", format_trajectory(written)).is_ok());
   const auto read = read_trajectory(folder / "t.tum");
   ASSERT_TRUE(read.is_ok()) << read.status().message();
   EXPECT_EQ(read->num_frames, written.num_frames);
@@ -75,7 +76,7 @@ TEST(TrajectoryFileTest, ErrorsNameFileAndLine) {
 
 TEST(TrajectoryFileTest, AFailedWriteLeavesNothing) {
   const TemporaryFolder folder;
-  EXPECT_EQ(write_text_file(folder / "no/t.tum", "x").code(), ErrorCode::kIo);
+  EXPECT_EQ(replace_file(folder / "no/t.tum", "x").code(), ErrorCode::kIo);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 

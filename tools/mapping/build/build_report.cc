@@ -3,8 +3,8 @@
 #include "tools/mapping/build/build_report.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
+#include "tools/common/json_text.h"
 #include "tools/common/text_format.h"
 
 namespace camloc::mapping {
@@ -12,6 +12,7 @@ namespace {
 
 using tools::append_text;
 using tools::degrees;
+using tools::Json;
 
 double bytes_per_landmark(const BuildSummary& s) {
   return static_cast<double>(s.build.file_bytes) / static_cast<double>(std::max<std::uint32_t>(s.build.num_landmarks, 1));
@@ -68,9 +69,9 @@ void append_weak_spots(const std::vector<WeakSpot>& all, std::string* text) {
   }
 }
 
-nlohmann::ordered_json slam_json(const SlamSummary& slam) {
+Json slam_json(const SlamSummary& slam) {
   const SlamCounts& c = slam.counts;
-  nlohmann::ordered_json json;
+  Json json;
   json["views"] = c.num_views;
   json["lost"] = c.num_lost;
   json["losses"] = c.num_losses;
@@ -88,7 +89,7 @@ nlohmann::ordered_json slam_json(const SlamSummary& slam) {
                   {"sigma_deg", degrees(slam.up->sigma_rad)}};
   else
     json["up"] = nullptr;
-  json["weak_spots"] = nlohmann::ordered_json::array();
+  json["weak_spots"] = Json::array();
   for (const WeakSpot& w : slam.weak_spots)
     json["weak_spots"].push_back({{"first_frame", w.first_frame}, {"last_frame", w.last_frame}, {"what", w.what}, {"advice", w.advice}});
   return json;
@@ -133,7 +134,7 @@ std::string format_table(const BuildSummary& s) {
 
 std::string format_json(const BuildSummary& s) {
   const MapBuildReport& b = s.build;
-  nlohmann::ordered_json json;
+  Json json;
   json["map"] = s.map_path;
   json["sequence"] = s.sequence;
   json["camera"] = s.camera;
@@ -148,8 +149,8 @@ std::string format_json(const BuildSummary& s) {
                            {"pairs", s.model_scale->num_pairs},
                            {"images", s.model_scale->num_images}};
   }
-  if (s.survey) json["survey"] = nlohmann::ordered_json::parse(format_json(*s.survey));
-  json["submaps"] = nlohmann::ordered_json::array();
+  if (s.survey) json["survey"] = Json::parse(format_json(*s.survey));
+  json["submaps"] = Json::array();
   for (const SubmapSummary& submap : s.submaps)
     json["submaps"].push_back({{"map", submap.map_path}, {"keyframes", submap.num_keyframes}, {"views", submap.num_views}});
   json["observations"] = b.num_observations;
@@ -163,9 +164,9 @@ std::string format_json(const BuildSummary& s) {
       {"pairs", b.num_consistency_pairs}, {"sigma_m", s.consistency_sigma_m}, {"sigma_deg", degrees(s.consistency_sigma_rad)}};
   json["bend"] = nullptr;
   if (s.bend.sigma_m > 0) json["bend"] = {{"sigma_m", s.bend.sigma_m}, {"sigma_deg", degrees(s.bend.sigma_rad)}};
-  if (s.merge) json["merge"] = nlohmann::ordered_json::parse(format_json(*s.merge), nullptr, false);
+  if (s.merge) json["merge"] = Json::parse(format_json(*s.merge), nullptr, false);
   json["seconds"] = s.seconds;
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return tools::json_text(json);
 }
 
 }  // namespace camloc::mapping

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <unordered_map>
 
+#include "core/io/replace_file.h"
 #include "core/map/map_writer.h"
 #include "tools/common/frame_reading.h"
 #include "tools/common/trajectory_file.h"
@@ -244,7 +245,7 @@ Status write_trajectory(const BuildRequest& request, const SlamResult& result, s
   for (const SlamPose& pose : result.poses) {
     if (pose.segment == result.segments.front().id) trajectory.poses.push_back({pose.stamp_ns, pose.T_map_camera, std::nullopt});
   }
-  return tools::write_text_file(request.trajectory_path, format_trajectory(trajectory));
+  return replace_file(request.trajectory_path, format_trajectory(trajectory));
 }
 
 Status build_from_walk(const BuildRequest& request, WorkObserver& observer, BuildSummary* summary) {

@@ -3,9 +3,9 @@
 #include "tools/mapping/build/merge_pipeline.h"
 
 #include <chrono>
-#include <nlohmann/json.hpp>
 
 #include "core/map/map_writer.h"
+#include "tools/common/json_text.h"
 #include "tools/common/text_format.h"
 
 namespace camloc::mapping {
@@ -55,15 +55,14 @@ std::string format_table(const MergeSummary& s) {
 std::string format_json(const MergeSummary& s) {
   const MapMergeReport& r = s.report;
   const Rigid3& T = r.alignment.T_a_b;
-  nlohmann::ordered_json json;
+  tools::Json json;
   json["map"] = s.map_path;
   json["first"] = {{"map", s.map_a}, {"landmarks", r.num_landmarks_a}, {"keyframes", r.num_keyframes_a}};
   json["second"] = {{"map", s.map_b}, {"landmarks", r.num_landmarks_b}, {"keyframes", r.num_keyframes_b}};
   json["localized_keyframes"] = r.num_localized;
   json["queries"] = {
       {"asked", r.registration.num_queries}, {"convincing", r.registration.num_convincing}, {"refused", r.registration.num_disagreeing}};
-  json["T_first_second"] = {{"translation_m", {T.translation.x(), T.translation.y(), T.translation.z()}},
-                            {"rotation_wxyz", {T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()}}};
+  json["T_first_second"] = {{"translation_m", tools::json_of(T.translation)}, {"rotation_wxyz", tools::json_of(T.rotation)}};
   json["disagreement"] = {
       {"median_m", r.alignment.residual_m}, {"median_deg", degrees(r.alignment.residual_rad)}, {"bend_m", r.alignment.bend_m}};
   json["landmarks"] = {{"fused", r.num_fused},
@@ -77,7 +76,7 @@ std::string format_json(const MergeSummary& s) {
   json["bytes"] = r.map.file_bytes;
   json["is_datum_from_second"] = r.is_datum_from_b;
   json["seconds"] = s.seconds;
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return tools::json_text(json);
 }
 
 }  // namespace camloc::mapping

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/order_statistics.h"
 #include "tools/mapping/cloud/point_cloud.h"
 
 namespace camloc::mapping {
@@ -29,11 +30,9 @@ Box box_of(const Points& points) {
   std::vector<float> values(points.size());
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < points.size(); ++i) values[i] = static_cast<float>(points[i][axis]);
-    const std::size_t low = values.size() / 100, high = values.size() - 1 - low;
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(low), values.end());
-    box.low[axis] = static_cast<double>(values[low]);
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(high), values.end());
-    box.high[axis] = static_cast<double>(values[high]);
+    const auto [low, high] = trimmed_range(values, 100);
+    box.low[axis] = static_cast<double>(low);
+    box.high[axis] = static_cast<double>(high);
   }
   return box;
 }

@@ -4,7 +4,6 @@
 // The writing half of colmap_model.h.
 #include <charconv>
 #include <filesystem>
-#include <span>
 #include <system_error>
 
 #include "core/io/replace_file.h"
@@ -104,7 +103,7 @@ Status write_colmap_model(const ColmapModel& model, const std::string& folder, c
                                                        {"images.txt", format_images(model, comment)},
                                                        {"points3D.txt", format_points(model, comment)}};
   for (const auto& [name, text] : files) {
-    if (const Status written = replace_file((path / name).string(), std::as_bytes(std::span(text))); !written.is_ok()) return written;
+    if (const Status written = replace_file((path / name).string(), text); !written.is_ok()) return written;
   }
   return Status::ok();
 }

@@ -6,7 +6,9 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
+#include <tuple>
 
+#include "core/base/order_statistics.h"
 #include "core/io/sequence.h"
 #include "tools/common/map_points.h"
 #include "tools/mapping/picture/point_raster.h"
@@ -27,12 +29,7 @@ std::vector<Rgb> landmark_colors(const MapView& map, const std::vector<Eigen::Ve
   if (coloring == PointColoring::kHeight) {
     const Eigen::Vector3d up = up_axis(map);
     for (const Eigen::Vector3d& p : positions) values.push_back(up.dot(p));
-    std::vector<double> sorted = values;
-    std::sort(sorted.begin(), sorted.end());
-    if (!sorted.empty()) {
-      low = sorted[sorted.size() / 50];
-      high = sorted[sorted.size() - 1 - sorted.size() / 50];
-    }
+    std::tie(low, high) = trimmed_range(values, 50);
   } else {
     for (const auto& landmark : map.landmarks()) values.push_back(std::log(std::max<double>(1, landmark.num_observations)));
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/base/order_statistics.h"
 #include "tools/mapping/cloud/wall_directions.h"
 #include "tools/mapping/picture/point_raster.h"
 
@@ -115,9 +116,8 @@ std::pair<Viewpoint, int> fit_picture(const Evaluation& evaluation, CloudView vi
   Viewpoint viewpoint = fit(shown, up, kWidth, kMaxHeight, kMargin);
   std::vector<double> rows;
   for (const Eigen::Vector3d& p : shown) rows.push_back((viewpoint.T_view_world * p).y() * viewpoint.px_per_m);
-  std::sort(rows.begin(), rows.end());
-  const double needed = rows.empty() ? 0 : rows[rows.size() - 1 - rows.size() / 100] - rows[rows.size() / 100];
-  const int height = std::clamp(static_cast<int>(needed) + 2 * kMargin, kMinHeight, kMaxHeight);
+  const auto [low, high] = trimmed_range(std::move(rows), 100);
+  const int height = std::clamp(static_cast<int>(high - low) + 2 * kMargin, kMinHeight, kMaxHeight);
   viewpoint = fit(shown, up, kWidth, height, kMargin);
   viewpoint.center_v += kHeader;
   return {viewpoint, height + kHeader + kFooter};

@@ -3,17 +3,18 @@
 #include "tools/mapping/eval/eval_report.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
+#include "tools/common/json_text.h"
 #include "tools/common/text_format.h"
 #include "tools/mapping/eval/eval_warnings.h"
 
 namespace camloc::mapping {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using tools::append_text;
 using tools::degrees;
+using tools::Json;
+using tools::json_of;
 
 unsigned long long count(std::uint64_t value) { return value; }
 double percent(std::uint64_t part, std::uint64_t whole) {
@@ -87,12 +88,8 @@ Json to_json(const DistanceStatistics& d) {
           {"p95_m", d.p95_m}, {"max_m", d.max_m},   {"share_3cm", d.share_3cm}, {"share_5cm", d.share_5cm}};
 }
 
-Json to_json(const Rigid3& T) {
-  return {{"translation_m", {T.translation.x(), T.translation.y(), T.translation.z()}},
-          {"rotation_wxyz", {T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()}}};
-}
+Json to_json(const Rigid3& T) { return {{"translation_m", json_of(T.translation)}, {"rotation_wxyz", json_of(T.rotation)}}; }
 
-Json to_json(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
 Json to_json(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
 Json alignment_json(const Evaluation& e) {
@@ -114,13 +111,13 @@ Json alignment_json(const Evaluation& e) {
                    {"moved_m", e.moved_m},
                    {"moved_deg", degrees(e.moved_rad)},
                    {"weakest_share", r.weakest_share},
-                   {"weakest_direction", to_json(r.weakest_direction)}};
+                   {"weakest_direction", json_of(r.weakest_direction)}};
   }
   for (const PointResidual& point : e.residuals) {
     json["control_points"].push_back({{"name", point.name},
                                       {"sigma_m", point.sigma_m},
-                                      {"residual_fit_m", to_json(point.aligned_m)},
-                                      {"residual_icp_m", to_json(point.final_m)}});
+                                      {"residual_fit_m", json_of(point.aligned_m)},
+                                      {"residual_icp_m", json_of(point.final_m)}});
   }
   return json;
 }
@@ -158,12 +155,12 @@ std::string format_json(const EvalSummary& s) {
                    {"icp_sigma", to_json(e.sigma_scale)},
                    {"control_points", to_json(e.points_scale)},
                    {"camera_positions", to_json(e.poses_scale)},
-                   {"map_extent_m", to_json(d.map_extent_m)},
-                   {"cloud_extent_m", to_json(d.cloud_extent_m)},
+                   {"map_extent_m", json_of(d.map_extent_m)},
+                   {"cloud_extent_m", json_of(d.cloud_extent_m)},
                    {"volume_ratio", d.volume_ratio()}};
   json["warnings"] = warnings_of(e);
   json["files"] = s.files;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return tools::json_text(json);
 }
 
 }  // namespace camloc::mapping

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/base/order_statistics.h"
 #include "tools/common/map_points.h"
 
 namespace camloc::mapping {
@@ -14,9 +15,7 @@ namespace {
 double extent_along(int axis, const std::vector<Eigen::Vector3d>& landmarks, const MapView& map) {
   std::vector<double> values;
   for (const Eigen::Vector3d& p : landmarks) values.push_back(p[axis]);
-  std::sort(values.begin(), values.end());
-  const std::size_t tail = values.size() / 100;
-  double low = values.empty() ? 0 : values[tail], high = values.empty() ? 0 : values[values.size() - 1 - tail];
+  auto [low, high] = trimmed_range(std::move(values), 100);
   for (std::uint32_t k = 0; k < map.keyframes().size(); ++k) {
     const double value = map.keyframe_pose(k).translation[axis];
     low = std::min(low, value);
