@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// camloc-map build: a recorded RGB-D sequence with poses becomes a map file.
+// camloc-map build: a recording becomes a map file. Arguments become a BuildRequest here; build_map does the work, watched by the
+// terminal, and its summary is printed as a table or JSON.
 #include <cstdio>
 #include <filesystem>
 #include <map>

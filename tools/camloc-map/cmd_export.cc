@@ -10,6 +10,7 @@
 #include "core/io/replace_file.h"
 #include "tools/camloc-map/commands.h"
 #include "tools/common/output_path.h"
+#include "tools/common/text_format.h"
 #include "tools/mapping/colmap/map_export.h"
 
 namespace camloc::mapping {
@@ -39,10 +40,9 @@ Status check_outputs(const ExportArguments& arguments) {
 
 Status write_exports(const MapView& map, const ExportArguments& arguments) {
   const ExportOptions& options = arguments.options;
-  const auto count = [](std::size_t n) { return static_cast<unsigned long long>(n); };
   if (!arguments.ply_path.empty()) {
     if (const Status written = replace_file(arguments.ply_path, format_ply(map, options)); !written.is_ok()) return written;
-    std::printf("%s: %llu landmarks\n", arguments.ply_path.c_str(), count(map.landmarks().size()));
+    std::printf("%s: %llu landmarks\n", arguments.ply_path.c_str(), tools::llu(map.landmarks().size()));
   }
   if (!arguments.colmap_folder.empty()) {
     const ColmapModel model = make_colmap_model(map, options);
@@ -50,12 +50,12 @@ Status write_exports(const MapView& map, const ExportArguments& arguments) {
       return written;
     std::size_t num_observations = 0;
     for (const ColmapImage& image : model.images) num_observations += image.observations.size();
-    std::printf("%s: %llu images, %llu points, %llu observations\n", arguments.colmap_folder.c_str(), count(model.images.size()),
-                count(model.points.size()), count(num_observations));
+    std::printf("%s: %llu images, %llu points, %llu observations\n", arguments.colmap_folder.c_str(), tools::llu(model.images.size()),
+                tools::llu(model.points.size()), tools::llu(num_observations));
   }
   if (!arguments.tum_path.empty()) {
     if (const Status written = replace_file(arguments.tum_path, format_tum(map, options)); !written.is_ok()) return written;
-    std::printf("%s: %llu keyframes\n", arguments.tum_path.c_str(), count(map.keyframes().size()));
+    std::printf("%s: %llu keyframes\n", arguments.tum_path.c_str(), tools::llu(map.keyframes().size()));
   }
   return std::fflush(stdout) == 0 ? Status::ok() : Status(ErrorCode::kIo, "cannot write to standard output");
 }

@@ -11,6 +11,7 @@
 #include "tools/common/json_text.h"
 #include "tools/common/output_path.h"
 #include "tools/common/terminal_observer.h"
+#include "tools/common/text_format.h"
 #include "tools/common/trajectory_file.h"
 #include "tools/evaluation/sequence_run.h"
 
@@ -62,11 +63,10 @@ Json record_json(const Localization& result) {
 
 void print_summary(const std::map<std::string, std::uint64_t>& states, const std::map<std::string, std::uint64_t>& reasons,
                    const FrameCounts& counts, const CalibrationHealth& calibration) {
-  std::printf("frames      %llu\n", static_cast<unsigned long long>(counts.num_frames));
-  if (counts.num_corrupt > 0) std::printf("unreadable  %llu\n", static_cast<unsigned long long>(counts.num_corrupt));
-  for (const auto& [state, count] : states) std::printf("%-11s %llu\n", state.c_str(), static_cast<unsigned long long>(count));
-  for (const auto& [reason, count] : reasons)
-    std::printf("  not localized: %s: %llu\n", reason.c_str(), static_cast<unsigned long long>(count));
+  std::printf("frames      %llu\n", llu(counts.num_frames));
+  if (counts.num_corrupt > 0) std::printf("unreadable  %llu\n", llu(counts.num_corrupt));
+  for (const auto& [state, count] : states) std::printf("%-11s %llu\n", state.c_str(), llu(count));
+  for (const auto& [reason, count] : reasons) std::printf("  not localized: %s: %llu\n", reason.c_str(), llu(count));
   if (calibration.is_suspect) {
     std::printf(
         "WARNING     calibration: the images fit the map with a focal length %.1f %% %s than the camera file says; check the camera file\n",

@@ -62,11 +62,9 @@ void print_datum(const MapView& map) {
 
 void print_json(const MapView& map, double open_ms) {
   const MapInfo& info = map.info();
-  char id[20];
-  std::snprintf(id, sizeof id, "%016llx", static_cast<unsigned long long>(info.map_id));
   const Json json{{"path", info.path},
                   {"name", info.name},
-                  {"map_id", id},
+                  {"map_id", text_of("%016llx", llu(info.map_id))},
                   {"version", info.version},
                   {"bytes", info.file_bytes},
                   {"bytes_per_landmark", bytes_per_landmark(info)},
@@ -87,7 +85,7 @@ void print_json(const MapView& map, double open_ms) {
 void print_table(const MapView& map, double open_ms) {
   const MapInfo& info = map.info();
   std::printf("map          %s%s%s\n", info.path.c_str(), info.name.empty() ? "" : ", ", info.name.c_str());
-  std::printf("id           %016llx, format version %u\n", static_cast<unsigned long long>(info.map_id), info.version);
+  std::printf("id           %016llx, format version %u\n", llu(info.map_id), info.version);
   std::printf("size         %.3f MB, %.1f bytes a landmark, opened in %.2f ms\n", 1e-6 * static_cast<double>(info.file_bytes),
               bytes_per_landmark(info), open_ms);
   std::printf("landmarks    %u with %u descriptors in %u cubes of coordinates\n", info.num_landmarks, info.num_descriptors, info.num_cubes);

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// What does not fit together is refused before the first frame: camera and images by size, texts that become part of a URL by syntax.
 #include "tools/evaluation/sequence_run.h"
 
 #include <chrono>

@@ -10,6 +10,7 @@
 #include "core/base/order_statistics.h"
 #include "core/io/image_writer.h"
 #include "tools/common/map_points.h"
+#include "tools/common/text_format.h"
 
 namespace camloc::tools {
 namespace {
@@ -78,9 +79,7 @@ void draw_scale_bar(cv::Mat& canvas, const Projection& projection) {
   const cv::Point from(kMargin, canvas.rows - 22);
   const cv::Point to = from + cv::Point(static_cast<int>(length_m * projection.px_per_m), 0);
   cv::line(canvas, from, to, kInk, 2);
-  char label[32];
-  std::snprintf(label, sizeof label, "%g m", length_m);
-  draw_text(canvas, label, to + cv::Point(8, 5), kInk);
+  draw_text(canvas, text_of("%g m", length_m), to + cv::Point(8, 5), kInk);
 }
 
 void draw_legend(cv::Mat& canvas) {

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Text from a message passes printable() on its way to the terminal: whoever can send on the network must not drive it.
 #include "tools/monitor/monitor_view.h"
 
 #include <Eigen/Core>
@@ -19,14 +21,6 @@ constexpr std::array kStageNames{"extract", "candidates", "match", "estimate", "
 
 bool has_pose(const pose_t& pose) { return pose.state == pose_t::LOCALIZED || pose.state == pose_t::COASTING; }
 
-/// Control bytes of a message must not reach the terminal.
-std::string printable(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
-  }
-  return text;
-}
-
 double largest_sigma(const Eigen::Matrix3d& covariance) {
   if (!covariance.allFinite()) return std::nan("");
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
@@ -34,7 +28,7 @@ double largest_sigma(const Eigen::Matrix3d& covariance) {
 }
 
 /// As camlocd's control socket writes it: JSON numbers lose the low bits of 64-bit integers.
-std::string map_id_text(std::int64_t map_id) { return text_of("%016llx", static_cast<unsigned long long>(map_id)); }
+std::string map_id_text(std::int64_t map_id) { return text_of("%016llx", llu(static_cast<std::uint64_t>(map_id))); }
 
 std::string age_text(const pose_t& pose) { return pose.age_us < 0 ? "unknown" : text_of("%.1f ms", pose.age_us / 1e3); }
 

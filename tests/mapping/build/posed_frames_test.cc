@@ -73,7 +73,8 @@ TEST(FindPosedFrames, TakesPosesOfATrajectoryByTime) {
   EXPECT_EQ(frames->num_selected, 6U);
   for (const auto& [frame, T_map_camera] : frames->T_map_camera_of_frame) {
     EXPECT_TRUE(frame >= 1 && frame < 7);
-    if (frame != 3) EXPECT_LT((T_map_camera.translation - room_pose(frame).translation).norm(), 1e-6) << frame;
+    if (frame == 3) continue;
+    EXPECT_LT((T_map_camera.translation - room_pose(frame).translation).norm(), 1e-6) << frame;
   }
   EXPECT_EQ(frames->T_map_camera_of_frame.size() + frames->num_without_pose, 6U);
   EXPECT_FALSE(frames->scale);

@@ -20,6 +20,8 @@ TEST(TextFormat, AppendsWithoutAZeroInside) {
   EXPECT_EQ(text, "a12b\n");
 }
 
+TEST(TextFormat, ControlCharactersAreMarked) { EXPECT_EQ(printable("a\n\x1b[2J\x7f\xc3\xa4"), "a??[2J?\xc3\xa4"); }
+
 TEST(TextFormat, DegreesOfRadians) { EXPECT_DOUBLE_EQ(degrees(std::numbers::pi), 180.0); }
 
 }  // namespace

@@ -13,12 +13,11 @@ namespace {
 using tools::append_text;
 using tools::degrees;
 using tools::Json;
+using tools::llu;
 
 double bytes_per_landmark(const BuildSummary& s) {
   return static_cast<double>(s.build.file_bytes) / static_cast<double>(std::max<std::uint32_t>(s.build.num_landmarks, 1));
 }
-
-unsigned long long count(std::uint64_t value) { return value; }
 
 constexpr std::size_t kMaxSpotsShown = 8;
 
@@ -40,7 +39,7 @@ void append_slam(const BuildSummary& s, std::string* text) {
               c.num_views / std::max(c.num_keyframes, 1U));
   append_text(text, "%-22s%u closed, %u refused\n", "loops", c.num_loops, c.num_loops_refused);
   append_text(text, "%-22smedian %.2f px, 90 %% below %.2f px (%llu sightings)\n", "reprojection error", slam.fit.median_px,
-              slam.fit.p90_px, count(slam.fit.num_sightings));
+              slam.fit.p90_px, llu(slam.fit.num_sightings));
   append_text(text, "%-22smedian %.1f mm\n", "depth error", 1000 * slam.fit.median_depth_m);
   append_text(text, "%-22s%s\n", "vertical", vertical_text(s).c_str());
 }
@@ -65,7 +64,7 @@ void append_weak_spots(const std::vector<WeakSpot>& all, std::string* text) {
   std::sort(shown.begin(), shown.end(), [](const WeakSpot& a, const WeakSpot& b) { return a.first_frame < b.first_frame; });
   append_text(text, "weak spots (%zu%s)\n", all.size(), all.size() > shown.size() ? ", the longest shown" : "");
   for (const WeakSpot& w : shown) {
-    append_text(text, "  frames %llu to %llu: %s; %s\n", count(w.first_frame), count(w.last_frame), w.what.c_str(), w.advice.c_str());
+    append_text(text, "  frames %llu to %llu: %s; %s\n", llu(w.first_frame), llu(w.last_frame), w.what.c_str(), w.advice.c_str());
   }
 }
 
@@ -101,18 +100,17 @@ std::string format_table(const BuildSummary& s) {
   const MapBuildReport& b = s.build;
   std::string text;
   append_text(&text, "%-22s%s\n", "map", s.map_path.c_str());
-  append_text(&text, "%-22s%u of %llu recorded, %llu selected\n", "frames used", b.num_frames, count(s.num_recorded),
-              count(s.num_selected));
-  append_text(&text, "%-22s%llu without pose, %llu without depth, %llu broken\n", "frames skipped", count(s.num_without_pose),
-              count(s.num_without_depth), count(s.reading.num_corrupt));
+  append_text(&text, "%-22s%u of %llu recorded, %llu selected\n", "frames used", b.num_frames, llu(s.num_recorded), llu(s.num_selected));
+  append_text(&text, "%-22s%llu without pose, %llu without depth, %llu broken\n", "frames skipped", llu(s.num_without_pose),
+              llu(s.num_without_depth), llu(s.reading.num_corrupt));
   if (s.slam) append_slam(s, &text);
   if (s.model_scale) append_text(&text, "%-22s%s\n", "scale of the model", describe_scale(*s.model_scale).c_str());
-  append_text(&text, "%-22s%llu\n", "observations", count(b.num_observations));
+  append_text(&text, "%-22s%llu\n", "observations", llu(b.num_observations));
   append_text(&text, "%-22s%u of %u\n", "landmarks kept", b.num_landmarks, b.num_landmarks_before);
   append_text(&text, "%-22s%u\n", "descriptors", b.num_descriptors);
   append_text(&text, "%-22s%u of %u views cover all landmarks\n", "keyframes", b.num_keyframes, b.num_keyframes_before);
   append_text(&text, "%-22s%u\n", "words", b.num_words);
-  append_text(&text, "%-22s%llu bytes, %.1f a landmark\n", "size", count(b.file_bytes), bytes_per_landmark(s));
+  append_text(&text, "%-22s%llu bytes, %.1f a landmark\n", "size", llu(b.file_bytes), bytes_per_landmark(s));
   if (s.bend.sigma_m > 0) {
     append_text(&text, "%-22s%.1f cm, %.2f deg per axis (maps of half of the sightings differ by twice that)\n", "bend of the map",
                 100 * s.bend.sigma_m, degrees(s.bend.sigma_rad));

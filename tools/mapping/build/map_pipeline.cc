@@ -1,5 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Two ways to a map. With poses (build_from_poses): every posed frame goes into the map builder. Without (build_from_walk): SLAM
+// finds the poses in a first pass that logs what it sees, the walk is placed in the site or turned upright, and a second pass over
+// the log feeds the builder. Both end in finish_map, which writes, or merges into the map that is extended.
 #include "tools/mapping/build/map_pipeline.h"
 
 #include <chrono>

@@ -45,7 +45,7 @@ std::string format_table(const MergeSummary& s) {
   append_text(&text, "%-22s%u, %.2f a landmark\n", "descriptors", m.num_descriptors,
               static_cast<double>(m.num_descriptors) / std::max(1U, m.num_landmarks));
   append_text(&text, "%-22s%u of %u views cover all landmarks\n", "keyframes", m.num_keyframes, m.num_keyframes_before);
-  append_text(&text, "%-22s%llu bytes, %.1f a landmark\n", "size", static_cast<unsigned long long>(m.file_bytes),
+  append_text(&text, "%-22s%llu bytes, %.1f a landmark\n", "size", tools::llu(m.file_bytes),
               static_cast<double>(m.file_bytes) / std::max(1U, m.num_landmarks));
   if (r.is_datum_from_b) append_text(&text, "%-22sthat of the second map, carried over\n", "datum");
   append_text(&text, "%-22s%.1f s\n", "time of merging", s.seconds);

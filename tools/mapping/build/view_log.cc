@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Every record is checked before it is believed: sizes against what is left of the file, then the hash over header and arrays.
 #include "tools/mapping/build/view_log.h"
 
 #define XXH_INLINE_ALL

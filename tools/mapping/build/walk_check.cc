@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// A recording is judged twice: early, by its depth images alone, so that nobody waits an hour for a refusal; and at the end, by how
+// far the camera moved. In between every frame leaves a note, and stretches of weak notes become spots with advice.
 #include "tools/mapping/build/walk_check.h"
 
 #include <algorithm>

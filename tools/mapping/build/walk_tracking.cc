@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// The first pass, frame by frame: features and thumbnail, SLAM, log. A resumed pass replays its log through the same SLAM first,
+// so that its state is that of a pass which was never interrupted.
 #include "tools/mapping/build/walk_tracking.h"
 
 #define XXH_INLINE_ALL

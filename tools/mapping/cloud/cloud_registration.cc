@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Each iteration pairs the points with the planes of the cloud, keeps the closest, and solves one weighted Gauss-Newton step for the
+// motion (and the scale, where asked). The last iterations see all correspondences, so that trimming biases nothing.
 #include "tools/mapping/cloud/cloud_registration.h"
 
 #include <Eigen/Cholesky>

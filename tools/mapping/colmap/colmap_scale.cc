@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
+
+#include "tools/common/text_format.h"
 
 namespace camloc::mapping {
 namespace {
@@ -30,19 +31,14 @@ double robust_deviation(const std::vector<double>& values, double center) {
   return 1.4826 * median(std::move(deviations));
 }
 
-std::string percent(double fraction) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f %%", 100 * fraction);
-  return text;
-}
+std::string percent(double fraction) { return tools::text_of("%.1f %%", 100 * fraction); }
 
 }  // namespace
 
 std::string describe_scale(const ModelScale& scale) {
-  char metres[32];
-  std::snprintf(metres, sizeof metres, "%.4g", scale.metres_per_unit);
-  return std::string(metres) + " m a unit, from " + std::to_string(scale.num_pairs) + " points in " + std::to_string(scale.num_images) +
-         " images; scatter " + percent(scale.spread) + ", drift between images " + percent(scale.image_spread);
+  return tools::text_of("%.4g", scale.metres_per_unit) + " m a unit, from " + std::to_string(scale.num_pairs) + " points in " +
+         std::to_string(scale.num_images) + " images; scatter " + percent(scale.spread) + ", drift between images " +
+         percent(scale.image_spread);
 }
 
 Result<ModelScale> estimate_model_scale(std::span<const DepthPair> pairs) {

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 #include <tuple>
 
 #include "core/base/order_statistics.h"
 #include "core/io/sequence.h"
 #include "tools/common/map_points.h"
+#include "tools/common/text_format.h"
 #include "tools/mapping/picture/point_raster.h"
 #include "tools/mapping/site/map_up.h"
 
@@ -41,12 +41,6 @@ std::vector<Rgb> landmark_colors(const MapView& map, const std::vector<Eigen::Ve
   return colors;
 }
 
-std::string printable(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }, '?');
-  return text;
-}
-
 /// The bytes of a number, lowest first, whatever the machine.
 template <typename Bits>
 void append_bits(Bits bits, std::string* bytes) {
@@ -74,9 +68,7 @@ ColmapImage make_image(const MapView& map, std::uint32_t keyframe, const std::ve
                        std::vector<std::uint32_t>* buffer) {
   const Intrinsics& color = map.info().camera.color;
   const Rigid3 T_camera_map = map.keyframe_pose(keyframe).inverse();
-  char name[32];
-  std::snprintf(name, sizeof name, "keyframe-%06u", keyframe);
-  ColmapImage image{keyframe + 1, 1, T_camera_map * T_out.inverse(), name, {}};
+  ColmapImage image{keyframe + 1, 1, T_camera_map * T_out.inverse(), tools::text_of("keyframe-%06u", keyframe), {}};
   const std::size_t count = map.keyframe_landmarks(keyframe, *buffer);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t landmark = (*buffer)[i];
@@ -100,9 +92,7 @@ Status check_export(const MapView& map, const ExportOptions& options) {
 }
 
 std::string describe_export(const MapView& map, const ExportOptions& options) {
-  char id[32];
-  std::snprintf(id, sizeof id, "%016llx", static_cast<unsigned long long>(map.info().map_id));
-  return "camloc map " + printable(map.info().name) + " (" + id + "), metres, " +
+  return "camloc map " + tools::printable(map.info().name) + tools::text_of(" (%016llx), metres, ", tools::llu(map.info().map_id)) +
          (options.use_wcs ? "coordinates of the site (wcs)" : "coordinates of the map");
 }
 

@@ -15,8 +15,8 @@ using tools::append_text;
 using tools::degrees;
 using tools::Json;
 using tools::json_of;
+using tools::llu;
 
-unsigned long long count(std::uint64_t value) { return value; }
 double percent(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }
@@ -24,11 +24,11 @@ double percent(std::uint64_t part, std::uint64_t whole) {
 void append_inputs(const EvalSummary& s, std::string* text) {
   const Evaluation& e = s.evaluation;
   append_text(text, "%-22s%s\n", "map", s.map_path.c_str());
-  append_text(text, "%-22s%llu of %llu with at least %u observations, %llu keyframes\n", "landmarks", count(e.num_used),
-              count(e.num_landmarks), s.min_observations, count(e.num_keyframes));
+  append_text(text, "%-22s%llu of %llu with at least %u observations, %llu keyframes\n", "landmarks", llu(e.num_used), llu(e.num_landmarks),
+              s.min_observations, llu(e.num_keyframes));
   append_text(text, "%-22s%s\n", "cloud", s.cloud_name.c_str());
-  append_text(text, "%-22s%llu read, %llu of them invalid, %llu kept (voxel %.3g m)\n", "points", count(s.num_read), count(s.num_invalid),
-              count(s.num_points), s.voxel_m);
+  append_text(text, "%-22s%llu read, %llu of them invalid, %llu kept (voxel %.3g m)\n", "points", llu(s.num_read), llu(s.num_invalid),
+              llu(s.num_points), s.voxel_m);
 }
 
 void append_alignment(const EvalSummary& s, std::string* text) {
@@ -41,8 +41,8 @@ void append_alignment(const EvalSummary& s, std::string* text) {
   if (e.registration) {
     const Registration& r = *e.registration;
     append_text(text, "%-22smoved by %.3f m, %.2f deg in %d iterations%s; %llu of %llu landmarks used, %.1f mm RMS to the surface\n", "ICP",
-                e.moved_m, degrees(e.moved_rad), r.num_iterations, r.is_converged ? "" : " (not converged)", count(r.num_correspondences),
-                count(r.num_points), 1000 * r.rms_m);
+                e.moved_m, degrees(e.moved_rad), r.num_iterations, r.is_converged ? "" : " (not converged)", llu(r.num_correspondences),
+                llu(r.num_points), 1000 * r.rms_m);
   } else {
     append_text(text, "%-22snone\n", "ICP");
   }
@@ -56,7 +56,7 @@ void append_points(const Evaluation& e, std::string* text) {
 }
 
 void append_row(const char* name, const DistanceStatistics& d, std::string* text) {
-  append_text(text, "  %-26s%9llu%8.2f%8.2f%8.2f%8.2f%8.1f%8.1f\n", name, count(d.count), 100 * d.mean_m, 100 * d.median_m, 100 * d.rms_m,
+  append_text(text, "  %-26s%9llu%8.2f%8.2f%8.2f%8.2f%8.1f%8.1f\n", name, llu(d.count), 100 * d.mean_m, 100 * d.median_m, 100 * d.rms_m,
               100 * d.p95_m, 100 * d.share_3cm, 100 * d.share_5cm);
 }
 
@@ -68,10 +68,9 @@ void append_distances(const EvalSummary& s, std::string* text) {
   append_row("all landmarks to point", d.all, text);
   append_row("cloud cell to landmark", d.cells, text);
   append_text(text, "\n%-22s%llu of %llu landmarks (%.1f %%) are farther than %.2g m from the cloud\n", "outside the scan",
-              count(d.num_outside), count(s.evaluation.num_used), percent(d.num_outside, s.evaluation.num_used),
-              s.evaluation.max_distance_m);
+              llu(d.num_outside), llu(s.evaluation.num_used), percent(d.num_outside, s.evaluation.num_used), s.evaluation.max_distance_m);
   append_text(text, "%-22s%.1f %% of %llu cells of the cloud near the keyframes have a landmark within 0.25 m\n", "coverage",
-              percent(d.num_covered, d.num_cells), count(d.num_cells));
+              percent(d.num_covered, d.num_cells), llu(d.num_cells));
 }
 
 void append_scale(const Evaluation& e, std::string* text) {

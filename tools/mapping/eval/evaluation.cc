@@ -1,5 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// evaluate_map is the job on one screen: find a start (points, trajectory, datum, or a search from which every candidate is refined
+// and the best compared with its rivals), refine it by trimmed ICP, check the scale, measure distances both ways. Everything is
+// relative to the cloud's origin until the result is made absolute: survey coordinates do not fit floats.
 #include "tools/mapping/eval/evaluation.h"
 
 #include <algorithm>

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Points go through a depth buffer of our own; lines and text are OpenCV's, drawn over everything.
 #include "tools/mapping/picture/point_raster.h"
 
 #include <algorithm>
@@ -9,6 +11,8 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+
+#include "tools/common/text_format.h"
 
 namespace camloc::mapping {
 namespace {
@@ -170,14 +174,9 @@ void PointRaster::add_scale_bar(const Viewpoint& view, int u, int v, Rgb color) 
   add_rectangle(u, v - 1, length_px, 3, color);
   add_rectangle(u, v - 5, 2, 11, color);
   add_rectangle(u + length_px - 2, v - 5, 2, 11, color);
-  char label[32];
-  std::snprintf(label, sizeof label,
-                length_m < 0.01 ? "%g mm"
-                : length_m < 1  ? "%g cm"
-                                : "%g m",
-                length_m < 0.01 ? 1000 * length_m
-                : length_m < 1  ? 100 * length_m
-                                : length_m);
+  const std::string label = length_m < 0.01 ? tools::text_of("%g mm", 1000 * length_m)
+                            : length_m < 1  ? tools::text_of("%g cm", 100 * length_m)
+                                            : tools::text_of("%g m", length_m);
   add_text(u + length_px + 8, v + static_cast<int>(kTextHeightPx) / 2, label, kTextHeightPx, color);
 }
 

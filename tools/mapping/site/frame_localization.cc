@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Only the frames that somebody picked pixels in are wanted, each with a few before it: the localizer may track into them.
 #include "tools/mapping/site/frame_localization.h"
 
 #include <optional>
