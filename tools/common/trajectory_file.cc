@@ -75,7 +75,7 @@ std::string format_pose(const Rigid3& pose) {
   const auto& t = pose.translation;
   const auto& q = pose.rotation;
   std::string text;
-  for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) text += " " + text_of("%.9g", value);
+  for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) text += text_of(" %.9g", value);
   return text;
 }
 
