@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "core/base/result.h"
 
@@ -18,5 +19,8 @@ namespace camloc {
 /// Errors: kIo (disk full, permission, no such folder, a device instead of a file); `path` is untouched then and the temporary file is
 /// gone.
 [[nodiscard]] Status replace_file(const std::string& path, std::span<const std::byte> bytes);
+[[nodiscard]] inline Status replace_file(const std::string& path, std::string_view text) {
+  return replace_file(path, std::as_bytes(std::span(text)));
+}
 
 }  // namespace camloc

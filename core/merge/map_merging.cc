@@ -118,7 +118,7 @@ WcsDatum carried_over(const WcsDatum& T_wcs_b, const MapAlignmentReport& alignme
 
 }  // namespace
 
-Result<MapData> merge_maps(const MapView& a, const MapData& b, const MapMergeOptions& options, const MapMergeProgress& progress,
+Result<MapData> merge_maps(const MapView& a, const MapData& b, const MapMergeOptions& options, WorkObserver& observer,
                            MapMergeReport* report) {
   const MapData first = unpack_map(a);
   if (const Status fits = check_pair(first, b); !fits.is_ok()) return fits;
@@ -127,7 +127,7 @@ Result<MapData> merge_maps(const MapView& a, const MapData& b, const MapMergeOpt
   report->num_landmarks_a = static_cast<std::uint32_t>(first.landmarks.size());
   report->num_landmarks_b = static_cast<std::uint32_t>(b.landmarks.size());
 
-  const auto fixes = register_map(a, first, b, options.registration, progress, &report->registration);
+  const auto fixes = register_map(a, first, b, options.registration, observer, &report->registration);
   if (!fixes.is_ok()) return fixes.status();
   report->num_localized = static_cast<std::uint32_t>(fixes.value().size());
   MapData second = b;
@@ -145,7 +145,7 @@ Result<MapData> merge_maps(const MapView& a, const MapData& b, const MapMergeOpt
   MapBuildOptions build = options.map;
   build.orb.scale_factor = first.orb_scale_factor;
   build.orb.num_levels = static_cast<int>(first.orb_num_levels);
-  if (progress && !progress("choosing landmarks and keyframes, training words", 0, 0)) return {ErrorCode::kUnavailable, "interrupted"};
+  if (!observer.on_progress("choosing landmarks and keyframes, training words ...")) return {ErrorCode::kUnavailable, "interrupted"};
   Result<MapData> merged = assemble_map(all.parts, build, &report->map);
   if (!merged.is_ok()) return merged.status();
   merged->name = first.name;

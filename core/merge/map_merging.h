@@ -49,8 +49,8 @@ struct MapMergeReport {
 /// `b` is a map without words or with; only its camera, landmarks, keyframes and datum count. The result has the name, the camera
 /// and the frame of `a`, and its datum; only where it has none that of `b`, carried over.
 /// Errors: kInvalid when the maps do not fit (other pyramid, quite another focal length, no place in common) or nothing fits the
-/// budget; kUnavailable when `progress` said so. The same maps and options give the same bytes.
-[[nodiscard]] Result<MapData> merge_maps(const MapView& a, const MapData& b, const MapMergeOptions& options,
-                                         const MapMergeProgress& progress, MapMergeReport* report);
+/// budget; kUnavailable when `observer` said so. The same maps and options give the same bytes.
+[[nodiscard]] Result<MapData> merge_maps(const MapView& a, const MapData& b, const MapMergeOptions& options, WorkObserver& observer,
+                                         MapMergeReport* report);
 
 }  // namespace camloc

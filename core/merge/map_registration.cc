@@ -37,7 +37,7 @@ class MapRegistration {
         neighbours_(find_covisible_keyframes(a_data, options.min_shared)),
         place_(b.camera.color, PyramidLevels(a_data.orb_scale_factor, static_cast<int>(a_data.orb_num_levels))) {}
 
-  [[nodiscard]] Result<std::vector<KeyframeFix>> run(const MapMergeProgress& progress, MapRegistrationReport* report);
+  [[nodiscard]] Result<std::vector<KeyframeFix>> run(WorkObserver& observer, MapRegistrationReport* report);
 
  private:
   [[nodiscard]] std::optional<KeyframeFix> find_anywhere(std::uint32_t keyframe);
@@ -60,13 +60,13 @@ class MapRegistration {
 };
 
 // First a sample of the keyframes without any prediction; what they agree on predicts all the others.
-Result<std::vector<KeyframeFix>> MapRegistration::run(const MapMergeProgress& progress, MapRegistrationReport* report) {
+Result<std::vector<KeyframeFix>> MapRegistration::run(WorkObserver& observer, MapRegistrationReport* report) {
   const Status cancelled(ErrorCode::kUnavailable, "interrupted");
   const auto num_keyframes = static_cast<std::uint32_t>(b_.keyframes.size());
   const std::uint32_t num_queries = std::min(num_keyframes, options_.max_queries);
   std::vector<KeyframeFix> fixes;
   for (std::uint32_t q = 0; q < num_queries; ++q) {
-    if (progress && !progress("looking for places in common, keyframe", q + 1, num_queries)) return cancelled;
+    if (!observer.on_progress("looking for places in common, keyframe", q + 1, num_queries)) return cancelled;
     const auto keyframe = static_cast<std::uint32_t>(std::uint64_t{q} * num_keyframes / num_queries);
     if (const auto fix = find_anywhere(keyframe)) fixes.push_back(*fix);
   }
@@ -81,7 +81,7 @@ Result<std::vector<KeyframeFix>> MapRegistration::run(const MapMergeProgress& pr
     const std::vector<KeyframeFix> known = fixes;
     for (std::uint32_t k = 0; k < num_keyframes; ++k) {
       if (is_fixed[k] != 0) continue;
-      if (progress && !progress("localizing in the first map, keyframe", k + 1, num_keyframes)) return cancelled;
+      if (!observer.on_progress("localizing in the first map, keyframe", k + 1, num_keyframes)) return cancelled;
       const KeyframeFix& near = nearest_fix(known, k);
       const auto fix = find_around(k, near.T_a_camera * T_b_camera(near.keyframe).inverse() * T_b_camera(k));
       if (!fix || !agree(near, *fix)) continue;
@@ -231,9 +231,9 @@ Status MapRegistration::keep_consistent(std::vector<KeyframeFix>* fixes) const {
 }  // namespace
 
 Result<std::vector<KeyframeFix>> register_map(const MapView& a, const MapData& a_data, const MapData& b,
-                                              const MapRegistrationOptions& options, const MapMergeProgress& progress,
+                                              const MapRegistrationOptions& options, WorkObserver& observer,
                                               MapRegistrationReport* report) {
-  return MapRegistration(a, a_data, b, options).run(progress, report);
+  return MapRegistration(a, a_data, b, options).run(observer, report);
 }
 
 std::vector<std::vector<SharedLandmarks>> find_covisible_keyframes(const MapData& map, std::uint32_t min_shared) {

@@ -8,12 +8,12 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/base/work_observer.h"
 #include "core/map/map_data.h"
 #include "core/map/map_view.h"
 #include "core/map/retrieval.h"
@@ -53,13 +53,10 @@ struct MapRegistrationReport {
   std::uint32_t num_disagreeing = 0;  ///< of those, refused because the majority says something else
 };
 
-/// Says what is going on, step `done` of `total`; false ends the work.
-using MapMergeProgress = std::function<bool(const std::string& what, std::uint64_t done, std::uint64_t total)>;
-
 /// One per keyframe of B that was found in A, ascending. `a_data` is what unpack_map(a) gives.
-/// Errors: kInvalid when too few keyframes agree on where they are, kUnavailable when `progress` said so.
+/// Errors: kInvalid when too few keyframes agree on where they are, kUnavailable when `observer` said so.
 [[nodiscard]] Result<std::vector<KeyframeFix>> register_map(const MapView& a, const MapData& a_data, const MapData& b,
-                                                            const MapRegistrationOptions& options, const MapMergeProgress& progress,
+                                                            const MapRegistrationOptions& options, WorkObserver& observer,
                                                             MapRegistrationReport* report);
 
 /// Keyframes that share landmarks.

@@ -19,7 +19,7 @@ void require(bool condition) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::istringstream stream(std::string(reinterpret_cast<const char*>(data), size));
-  const auto cloud = camloc::map_tool::read_cloud(stream, "fuzz", {});
+  const auto cloud = camloc::mapping::read_cloud(stream, "fuzz", {});
   if (!cloud) {
     require(!cloud.status().message().empty() && cloud.status().message().find('\n') == std::string::npos);
     return 0;

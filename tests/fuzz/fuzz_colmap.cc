@@ -13,7 +13,7 @@
 namespace {
 
 using camloc::fuzz::ScratchFolder;
-using camloc::map_tool::ColmapModel;
+using camloc::mapping::ColmapModel;
 
 void require(bool condition) {
   if (!condition) std::abort();
@@ -38,12 +38,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   scratch.write("cameras.txt", data[0] == 'c' ? text : "1 PINHOLE 640 480 500 500 320 240\n");
   scratch.write("points3D.txt", data[0] == 'p' ? text : "5 1 2 3 10 20 30 0.5 1 0\n6 1 2 3 10 20 30 0.5\n");
   scratch.write("images.txt", data[0] == 'i' ? text : "1 1 0 0 0 0 0 0 1 a.png\n1 2 5\n");
-  const auto model = camloc::map_tool::read_colmap_model(scratch.path());
+  const auto model = camloc::mapping::read_colmap_model(scratch.path());
   require(model.status().message().find('\n') == std::string::npos);
   if (!model) return 0;
   check_consistent(*model);
-  require(camloc::map_tool::write_colmap_model(*model, scratch.path() + "/again", "fuzz").is_ok());
-  const auto again = camloc::map_tool::read_colmap_model(scratch.path() + "/again");
+  require(camloc::mapping::write_colmap_model(*model, scratch.path() + "/again", "fuzz").is_ok());
+  const auto again = camloc::mapping::read_colmap_model(scratch.path() + "/again");
   require(again.is_ok() && again->images.size() == model->images.size() && again->points.size() == model->points.size());
   return 0;
 }

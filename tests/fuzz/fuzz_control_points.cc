@@ -14,7 +14,7 @@
 
 namespace {
 
-using namespace camloc::map_tool;
+using namespace camloc::mapping;
 
 void require(bool condition) {
   if (!condition) std::abort();

@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The layer rule, checked on the #include lines of every file.
 
-    tests -> everything    tools -> drivers, core, lcmtypes    daemon -> drivers, core, lcmtypes
+    tests -> everything    daemon -> drivers, core, lcmtypes
+    tools: common <- jobs, mapping/* <- programs; all -> drivers, core; camloc -> lcmtypes
     drivers -> core/base, core/geometry    core: base <- geometry <- features <- map <- localize, slam
 
 core/ has no thread, socket, file watcher, clock read or print; what is shipped never includes OpenCV's codecs, windows or
@@ -28,15 +29,31 @@ ALLOWED["core/slam"] = [*CORE[:7], "core/optimize", "core/dense"]
 ALLOWED["core/merge"] = [*ALLOWED["core/slam"], "core/slam"]
 ALLOWED["drivers"] = ["core/base", "core/geometry", "core/io"]
 ALLOWED["daemon"] = ["drivers", *CORE, *LCM_TYPES]
-ALLOWED["tools"] = ["drivers", *CORE, "core/optimize", "core/dense", "core/slam", "core/merge", *LCM_TYPES]
+# Tools: what they share, libraries of one job each, those of map making in the order in which they build on each other, and
+# programs, which include libraries and not each other.
+SHARED = ["drivers", *CORE, "core/optimize", "core/dense", "core/slam", "core/merge", "tools/common"]
+MAPPING = [f"tools/mapping/{room}" for room in ("site", "picture", "colmap", "build", "eval")]
+JOBS = [f"tools/{job}" for job in ("evaluation", "recording", "doctor", "monitor")]
+ALLOWED["tools/mapping/cloud"] = CORE[:3]
+ALLOWED |= {folder: SHARED for folder in ("tools/common", *JOBS[:3], "tools/camloc-camera", "tools/camloc-sim")}
+ALLOWED |= {room: [*SHARED, *MAPPING[:i]] for i, room in enumerate(MAPPING)}
+ALLOWED["tools/mapping/eval"].append("tools/mapping/cloud")
+ALLOWED["tools/monitor"] = [*SHARED, *LCM_TYPES]
+ALLOWED["tools/camloc"] = [*SHARED, *JOBS, *LCM_TYPES]
+ALLOWED["tools/camloc-map"] = [*SHARED, "tools/mapping"]
+ALLOWED["tools/camloc-bench"] = [*SHARED, "tools/evaluation"]
 
 CORE_FORBIDDEN_HEADERS = re.compile(
     r"^<(thread|future|mutex|shared_mutex|condition_variable|semaphore|latch|barrier|stop_token|pthread\.h|iostream|ostream|"
     r"print|syslog\.h|sys/socket\.h|sys/un\.h|netinet/.*|arpa/.*|netdb\.h|poll\.h|sys/epoll\.h|sys/inotify\.h|sys/time\.h|"
     r"time\.h|ctime|lcm/.*|systemd/.*)>$")
-CORE_FORBIDDEN_CALLS = re.compile(
-    r"\b(std::)?(printf|fprintf|vprintf|vfprintf|puts|fputs|putchar|perror|syslog)\s*\(|std::(cout|cerr|clog)\b|"
+PRINT_CALLS = re.compile(
+    r"\b(std::)?(printf|fprintf|vprintf|vfprintf|puts|fputs|putchar|perror|syslog)\s*\(|std::(cout|cerr|clog)\b")
+CLOCK_CALLS = re.compile(
     r"(steady|system|high_resolution)_clock::now|\b(clock_gettime|gettimeofday|clock)\s*\(|\btime\s*\((nullptr|NULL|0)\)")
+# The library of map making tells an observer (core/base/work_observer.h) what the programs print, and asks it whether to stop.
+MAPPING_FORBIDDEN_HEADERS = re.compile(
+    r'^("tools/common/(command_line|interrupt|progress_line|terminal_observer)\.h"|<(iostream|csignal|CLI/.*)>)$')
 SHIPPED_FORBIDDEN_HEADERS = re.compile(r"^<opencv2/(imgcodecs|highgui|videoio|opencv)(\.hpp|/.*)>$")
 NETWORK_HEADERS = re.compile(r"^<opencv2/dnn(\.hpp|/.*)>$")
 INCLUDE = re.compile(r'^\s*#\s*include\s*(<[^>]+>|"[^"]+")')
@@ -53,7 +70,9 @@ def include_error(path, layer, target):
     name = target[1:-1]
     if layer.startswith("core/") and CORE_FORBIDDEN_HEADERS.match(target):
         return "core has no thread, socket, watcher, clock or print"
-    if layer != "tools" and SHIPPED_FORBIDDEN_HEADERS.match(target):
+    if layer.startswith("tools/mapping/") and MAPPING_FORBIDDEN_HEADERS.match(target):
+        return "the library of map making neither prints nor reads signals: it has an observer"
+    if not layer.startswith("tools/") and SHIPPED_FORBIDDEN_HEADERS.match(target):
         return "the daemon must not pull in OpenCV's codecs, windows or video"
     if NETWORK_HEADERS.match(target) and not path.startswith("core/localize/coarse_cnn"):
         return "only core/localize/coarse_cnn uses OpenCV's networks"
@@ -83,9 +102,11 @@ def violations(root):
                 error = include_error(path, layer, include.group(1)) if include else None
                 if error:
                     found.append(f"{path}:{number}: {include.group(1)}: {error}")
-                call = CORE_FORBIDDEN_CALLS.search(line.split("//")[0]) if path.startswith("core/") else None
+                code = line.split("//")[0]
+                call = PRINT_CALLS.search(code) if path.startswith(("core/", "tools/mapping/")) else None
+                call = call or (CLOCK_CALLS.search(code) if path.startswith("core/") else None)
                 if call:
-                    found.append(f"{path}:{number}: {call.group(0).strip()}: core neither prints nor reads a clock")
+                    found.append(f"{path}:{number}: {call.group(0).strip()}: this layer does not print, and core reads no clock")
     return found, num_files
 
 
@@ -106,12 +127,21 @@ class RuleTest(unittest.TestCase):
                            ("tools/camloc/a.cc", '  #  include "daemon/config.h"'), ("core/base/a.cc", "#include <thread>"),
                            ("core/map/a.cc", "#include <iostream>"), ("core/map/a.cc", 'std::fprintf(stderr, "x");'),
                            ("core/localize/a.cc", "auto t = std::chrono::steady_clock::now();"), ("daemon/a.cc", "#include <opencv2/highgui.hpp>"),
-                           ("core/localize/a.cc", "#include <opencv2/dnn.hpp>"), ("core/map/a.cc", '#include "map_view.h"'), ("core/a.cc", "")]:
+                           ("core/localize/a.cc", "#include <opencv2/dnn.hpp>"), ("core/map/a.cc", '#include "map_view.h"'), ("core/a.cc", ""),
+                           ("tools/camloc-map/a.cc", '#include "tools/camloc/commands.h"'), ("tools/mapping/a.cc", ""),
+                           ("tools/mapping/site/a.cc", '#include "tools/mapping/build/map_pipeline.h"'),
+                           ("tools/mapping/cloud/a.cc", '#include "tools/common/text_format.h"'),
+                           ("tools/mapping/build/a.cc", '#include "tools/camloc-map/commands.h"'),
+                           ("tools/mapping/build/a.cc", '#include "tools/common/progress_line.h"'),
+                           ("tools/mapping/eval/a.cc", 'std::printf("x");'), ("tools/doctor/a.cc", '#include "camloc/pose_t.hpp"'),
+                           ("tools/recording/a.cc", '#include "tools/evaluation/perturbation.h"')]:
             self.assertEqual(len(self.check(path, line)), 1, (path, line))
 
     def test_allows_what_is_allowed(self):
         for path, line in [("core/localize/a.cc", '#include "core/map/map_view.h"'), ("drivers/a.cc", '#include "core/geometry/camera.h"'),
-                           ("daemon/a.cc", '#include "camloc/pose_t.hpp"'), ("tools/camloc-map/a.cc", '#include "tools/camloc/commands.h"'),
+                           ("daemon/a.cc", '#include "camloc/pose_t.hpp"'), ("tools/camloc-map/a.cc", '#include "tools/mapping/build/map_pipeline.h"'),
+                           ("tools/mapping/eval/a.cc", '#include "tools/mapping/cloud/point_cloud.h"'),
+                           ("tools/camloc-bench/a.cc", '#include "tools/evaluation/sequence_run.h"'),
                            ("tools/camloc-map/a.cc", "#include <opencv2/imgcodecs.hpp>"), ("core/map/a.cc", "// printf() is not used here"),
                            ("core/base/a.h", "#include <vector>"), ("core/map/a.cc", "std::snprintf(text, 3, format);")]:
             self.assertEqual(self.check(path, line), [], (path, line))

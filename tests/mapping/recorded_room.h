@@ -16,7 +16,7 @@
 #include "core/slam/slam.h"
 #include "drivers/sample_source.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 constexpr int kRoomWidth = 320, kRoomHeight = 240;
 constexpr std::uint64_t kRoomStride = 2;  ///< frames of the path between two of the recording
@@ -58,4 +58,4 @@ inline void record_room(const std::string& folder, std::uint64_t count, const Im
   std::ofstream(folder + "/depth.txt") << depth.str();
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

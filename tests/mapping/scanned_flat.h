@@ -10,7 +10,7 @@
 
 #include "tests/map/synthetic_map.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 using testing::Random;
 
@@ -56,4 +56,4 @@ struct ScannedFlat {
   }
 };
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

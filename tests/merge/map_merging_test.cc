@@ -10,6 +10,7 @@
 #include <algorithm>
 
 #include "core/map/map_writer.h"
+#include "tests/base/recording_observer.h"
 #include "tests/merge/two_days.h"
 
 namespace camloc {
@@ -37,7 +38,7 @@ class MapMergingTest : public ::testing::Test {
   }
   Result<MapData> merge(const MapData& a, const MapData& b) {
     report_ = {};
-    return merge_maps(open(a), b, options_, {}, &report_);
+    return merge_maps(open(a), b, options_, WorkObserver::nobody(), &report_);
   }
   testing::TemporaryFolder folder_;
   int num_files_ = 0;
@@ -205,11 +206,14 @@ TEST_F(MapMergingTest, SameMapsGiveTheSameBytesAndCanBeInterrupted) {
   const auto once = merge(a, b), again = merge(a, b);
   ASSERT_TRUE(once.is_ok() && again.is_ok());
   EXPECT_EQ(serialize_map(once.value()).value(), serialize_map(again.value()).value());
-  int steps = 0;
-  const auto stopped = merge_maps(
-      open(a), b, options_, [&](const std::string&, std::uint64_t, std::uint64_t) { return ++steps < 5; }, &report_);
+  testing::RecordingObserver all, five(5);
+  ASSERT_TRUE(merge_maps(open(a), b, options_, all, &report_).is_ok());
+  EXPECT_EQ(all.count("looking for places in common, keyframe"), report_.registration.num_queries);
+  EXPECT_EQ(all.count("choosing landmarks and keyframes, training words ..."), 1U);
+  const auto stopped = merge_maps(open(a), b, options_, five, &report_);
   EXPECT_EQ(stopped.status().code(), ErrorCode::kUnavailable);
-  EXPECT_EQ(steps, 5);
+  EXPECT_EQ(five.steps.size(), 5U);
+  EXPECT_TRUE(five.is_monotone());
 }
 
 }  // namespace

@@ -22,9 +22,9 @@ struct Shared : testing::TrueKeyframes {
       if (is_second && k == 4) keyframes.clear();
       add(looking({0.12 * k, 0.03 * k, 1.4}, 0.05 * k), is_second ? 1 : 0);
       if (!keyframes.empty()) {
-        LandmarkSet set;
-        set.assign(map, keyframes, 4000);
-        fuse_into_keyframe(&set, k, 4, &registration, &map);
+        LandmarkSet set = map.empty_landmark_set();
+        map.collect_landmarks(keyframes, 4000, &set);
+        fuse_into_keyframe(&set, k, 4, &solver, &map);
       }
       keyframes.push_back(k);
     }

@@ -219,10 +219,10 @@ TEST(SlamMap, JoiningSegmentsMovesOneAndLeavesTheOther) {
 
 TEST(SlamMap, ScaleAndNoiseGrowWithTheLevel) {
   const SlamMap map(test_camera(), 1.2F, 8);
-  EXPECT_FLOAT_EQ(map.scale_of_level(0), 1);
-  EXPECT_NEAR(map.scale_of_level(7), std::pow(1.2, 7), 1e-4);
-  EXPECT_EQ(map.scale_of_level(200), map.scale_of_level(7));  // levels from outside are not believed
-  for (std::uint8_t level = 1; level < 8; ++level) EXPECT_GT(map.sigma_px(level), map.sigma_px(static_cast<std::uint8_t>(level - 1)));
+  EXPECT_FLOAT_EQ(map.levels().scale(0), 1);
+  EXPECT_NEAR(map.levels().scale(7), std::pow(1.2, 7), 1e-4);
+  EXPECT_EQ(map.levels().scale(200), map.levels().scale(7));  // levels from outside are not believed
+  for (std::uint8_t level = 1; level < 8; ++level) EXPECT_GT(map.levels().sigma_px(level), map.levels().sigma_px(static_cast<std::uint8_t>(level - 1)));
 }
 
 }  // namespace

@@ -16,7 +16,6 @@
 #include "drivers/source_url.h"
 #include "tools/camloc-bench/commands.h"
 #include "tools/camloc-bench/opencv_reference.h"
-#include "tools/camloc/commands.h"
 #include "tools/common/command_line.h"
 #include "tools/evaluation/sequence_run.h"
 #include "tools/evaluation/trajectory_error.h"
@@ -229,5 +228,5 @@ int main(int argc, char** argv) {
   if (const int usage = camloc::tools::parse_command_line(app, argc, argv, &is_over); is_over) return usage;
   if (slam->parsed()) return exit_code;
   arguments.run.is_single = arguments.mode == "single";
-  return camloc::tools::report(bench(arguments));
+  return camloc::tools::report("camloc", bench(arguments));
 }

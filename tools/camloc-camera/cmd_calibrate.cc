@@ -10,6 +10,7 @@
 
 #include "core/io/camera_file.h"
 #include "core/io/image_writer.h"
+#include "core/io/replace_file.h"
 #include "tools/camloc-camera/calibration.h"
 #include "tools/camloc-camera/commands.h"
 #include "tools/camloc-camera/coverage_picture.h"
@@ -18,7 +19,6 @@
 #include "tools/common/output_path.h"
 #include "tools/common/progress_line.h"
 #include "tools/common/text_format.h"
-#include "tools/common/trajectory_file.h"
 
 namespace camloc::camera_tool {
 namespace {
@@ -64,8 +64,7 @@ class Display {
 };
 
 Status write_results(const Arguments& arguments, const Calibration& calibration, const CalibrationViews& views) {
-  if (Status status = tools::write_text_file(arguments.out_path, format_camera_file(calibration, arguments.board_text)); !status)
-    return status;
+  if (Status status = replace_file(arguments.out_path, format_camera_file(calibration, arguments.board_text)); !status) return status;
   if (arguments.png_path.empty()) return Status::ok();
   return write_png(arguments.png_path, draw_coverage({&arguments.options.board, views.views, &calibration.lens, calibration.held_out}));
 }

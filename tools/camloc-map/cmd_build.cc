@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// camloc-map build: a recorded RGB-D sequence with poses becomes a map file.
+// camloc-map build: a recording becomes a map file. Arguments become a BuildRequest here; build_map does the work, watched by the
+// terminal, and its summary is printed as a table or JSON.
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -12,10 +13,11 @@
 #include "tools/camloc-map/commands.h"
 #include "tools/common/command_line.h"
 #include "tools/common/output_path.h"
+#include "tools/common/terminal_observer.h"
 #include "tools/mapping/build/build_report.h"
 #include "tools/mapping/build/map_pipeline.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr const char* kFooter =
@@ -55,6 +57,11 @@ Status check_arguments(const BuildArguments& arguments) {
   return Status::ok();
 }
 
+Status build(const BuildRequest& request, BuildSummary* summary) {
+  tools::TerminalObserver observer;
+  return build_map(request, observer, summary);
+}
+
 int run(BuildArguments arguments) {
   BuildRequest& request = arguments.request;
   const auto camera = read_camera_file(arguments.camera_path);
@@ -62,9 +69,7 @@ int run(BuildArguments arguments) {
   request.camera = camera.value();
   if (const Status checked = check_arguments(arguments); !checked.is_ok()) return report_error(checked, 2);
   BuildSummary summary;
-  if (const Status built = build_map(request, &summary); !built.is_ok()) {
-    return report_error(built, built.code() == ErrorCode::kInvalid ? 2 : 1);
-  }
+  if (const Status built = build(request, &summary); !built.is_ok()) { return report(built); }
   if (summary.reading.num_corrupt > 0) {
     tools::print_error("camloc-map", std::to_string(summary.reading.num_corrupt) + " of " + std::to_string(summary.num_selected) +
                                          " frames left out because they could not be read, the first: " + summary.reading.first_corrupt);
@@ -74,7 +79,7 @@ int run(BuildArguments arguments) {
                                          "; the map was written without site coordinates, 'camloc map georef' adds them");
   }
   const std::string text = arguments.is_json ? format_json(summary) : format_table(summary);
-  const bool is_printed = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+  const bool is_printed = tools::print_text(text);
   const bool is_complete = !summary.survey || summary.survey->is_written;
   return is_printed && is_complete ? 0 : 1;
 }
@@ -127,4 +132,4 @@ void add_build_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

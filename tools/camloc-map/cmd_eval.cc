@@ -10,11 +10,10 @@
 
 #include "core/io/camera_file.h"
 #include "core/io/image_writer.h"
+#include "core/io/replace_file.h"
 #include "core/io/sequence.h"
 #include "tools/camloc-map/commands.h"
-#include "tools/common/interrupt.h"
-#include "tools/common/progress_line.h"
-#include "tools/common/trajectory_file.h"
+#include "tools/common/terminal_observer.h"
 #include "tools/mapping/build/posed_frames.h"
 #include "tools/mapping/cloud/cloud_file.h"
 #include "tools/mapping/eval/dense_cloud.h"
@@ -22,11 +21,8 @@
 #include "tools/mapping/eval/eval_report.h"
 #include "tools/mapping/eval/evaluation.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
-
-using tools::InterruptGuard;
-using tools::ProgressLine;
 
 constexpr const char* kFooter =
     "Examples: against a scan; against the recording's own depth with poses from elsewhere\n"
@@ -44,17 +40,6 @@ struct EvalArguments {
   EvaluationOptions options;
   bool is_json = false;
 };
-
-Result<PointCloud> load_scan(const EvalArguments& arguments, ProgressLine* progress) {
-  const auto on_progress = [&](std::uint64_t done, std::uint64_t total) {
-    char text[64];
-    std::snprintf(text, sizeof text, "reading the cloud: %.0f of %.0f MB", static_cast<double>(done) / 1e6,
-                  static_cast<double>(total) / 1e6);
-    progress->say(text);
-    return !InterruptGuard::is_interrupted();
-  };
-  return read_cloud(arguments.lidar_path, {arguments.voxel_m, arguments.lidar_unit_m, 1}, on_progress);
-}
 
 /// The camera in the map and in the frame of the cloud at the same times: those of the trajectory of the map.
 Result<std::vector<PosePair>> match_poses(const std::string& trajectory_path, const std::vector<StampedPose>& reference) {
@@ -81,7 +66,7 @@ Result<std::vector<StampedPose>> stamped(const PosedFrames& frames) {
 }
 
 /// The dense cloud, and with --trajectory the pairs of poses.
-Result<PointCloud> load_reference(EvalArguments arguments, std::vector<PosePair>* poses, ProgressLine* progress) {
+Result<PointCloud> load_reference(EvalArguments arguments, std::vector<PosePair>* poses, WorkObserver& observer) {
   const auto camera = read_camera_file(arguments.camera_path);
   if (!camera.is_ok()) return camera.status();
   const auto all_frames = find_posed_frames(arguments.reference, camera.value());
@@ -96,12 +81,7 @@ Result<PointCloud> load_reference(EvalArguments arguments, std::vector<PosePair>
   arguments.reference.include = "::" + std::to_string(arguments.frame_step);
   const auto frames = find_posed_frames(arguments.reference, camera.value());
   if (!frames.is_ok()) return frames.status();
-  DenseCloudOptions options;
-  options.voxel_m = arguments.voxel_m;
-  return fuse_dense_cloud(frames.value(), camera.value(), options, [&](std::uint64_t done, std::uint64_t total) {
-    progress->say("fusing depth images: " + std::to_string(done) + " of " + std::to_string(total));
-    return !InterruptGuard::is_interrupted();
-  });
+  return fuse_dense_cloud(frames.value(), camera.value(), arguments.voxel_m, observer);
 }
 
 Status write_files(const EvalArguments& arguments, const PointCloud& cloud, EvalSummary* summary) {
@@ -124,7 +104,7 @@ Status write_files(const EvalArguments& arguments, const PointCloud& cloud, Eval
   }
   const std::string path = (folder / "evaluation.json").string();
   summary->files.push_back(path);
-  return tools::write_text_file(path, format_json(*summary));
+  return replace_file(path, format_json(*summary));
 }
 
 Status load_alignment(const EvalArguments& arguments, EvaluationInput* input) {
@@ -144,22 +124,19 @@ Status load_alignment(const EvalArguments& arguments, EvaluationInput* input) {
 
 Status evaluate(const EvalArguments& arguments, const MapView& map, EvalSummary* summary) {
   const auto start = std::chrono::steady_clock::now();
-  const InterruptGuard guard;
-  ProgressLine progress(0);
+  tools::TerminalObserver observer;
   EvaluationInput input;
   input.map = &map;
   if (const Status loaded = load_alignment(arguments, &input); !loaded.is_ok()) return loaded;
   const bool is_scan = !arguments.lidar_path.empty();
-  const auto cloud = is_scan ? load_scan(arguments, &progress) : load_reference(arguments, &input.poses, &progress);
+  const auto cloud = is_scan ? read_cloud(arguments.lidar_path, {arguments.voxel_m, arguments.lidar_unit_m, 1}, observer)
+                             : load_reference(arguments, &input.poses, observer);
   if (!cloud.is_ok()) return cloud.status();
   input.cloud = &cloud.value();
   EvaluationOptions options = arguments.options;
   // A recording's poses are in a frame of their own: the datum of the map says nothing about it.
   if (!is_scan && options.start == AlignStart::kAuto && input.points.empty() && input.poses.empty()) options.start = AlignStart::kSearch;
-  auto evaluation = evaluate_map(input, options, [&](const std::string& stage) {
-    progress.say(stage);
-    return !InterruptGuard::is_interrupted();
-  });
+  auto evaluation = evaluate_map(input, options, observer);
   if (!evaluation.is_ok()) return evaluation.status();
   if (map.is_damaged()) return {ErrorCode::kCorrupt, arguments.map_path + ": was truncated while it was read"};
   summary->evaluation = std::move(evaluation).value();
@@ -170,7 +147,7 @@ Status evaluate(const EvalArguments& arguments, const MapView& map, EvalSummary*
   summary->num_points = cloud.value().points_m.size();
   summary->voxel_m = arguments.voxel_m;
   summary->min_observations = arguments.options.min_observations;
-  progress.say("drawing ...");
+  observer.show("drawing ...", 0, 0, "");
   const Status written = write_files(arguments, cloud.value(), summary);
   summary->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return written;
@@ -208,7 +185,7 @@ int run(const EvalArguments& arguments) {
   EvalSummary summary;
   if (const Status done = evaluate(arguments, map.value(), &summary); !done.is_ok()) return report_error(done, exit_code_of(done));
   const std::string text = arguments.is_json ? format_json(summary) : format_table(summary);
-  return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0 ? 0 : 1;
+  return tools::print_text(text) ? 0 : 1;
 }
 
 void add_reference_options(CLI::App* command, EvalArguments* arguments) {
@@ -265,4 +242,4 @@ void add_eval_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

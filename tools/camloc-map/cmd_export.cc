@@ -10,9 +10,10 @@
 #include "core/io/replace_file.h"
 #include "tools/camloc-map/commands.h"
 #include "tools/common/output_path.h"
+#include "tools/common/text_format.h"
 #include "tools/mapping/colmap/map_export.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr const char* kFooter =
@@ -37,14 +38,11 @@ Status check_outputs(const ExportArguments& arguments) {
   return Status::ok();
 }
 
-Status write_text(const std::string& path, const std::string& text) { return replace_file(path, std::as_bytes(std::span(text))); }
-
 Status write_exports(const MapView& map, const ExportArguments& arguments) {
   const ExportOptions& options = arguments.options;
-  const auto count = [](std::size_t n) { return static_cast<unsigned long long>(n); };
   if (!arguments.ply_path.empty()) {
-    if (const Status written = write_text(arguments.ply_path, format_ply(map, options)); !written.is_ok()) return written;
-    std::printf("%s: %llu landmarks\n", arguments.ply_path.c_str(), count(map.landmarks().size()));
+    if (const Status written = replace_file(arguments.ply_path, format_ply(map, options)); !written.is_ok()) return written;
+    std::printf("%s: %llu landmarks\n", arguments.ply_path.c_str(), tools::llu(map.landmarks().size()));
   }
   if (!arguments.colmap_folder.empty()) {
     const ColmapModel model = make_colmap_model(map, options);
@@ -52,12 +50,12 @@ Status write_exports(const MapView& map, const ExportArguments& arguments) {
       return written;
     std::size_t num_observations = 0;
     for (const ColmapImage& image : model.images) num_observations += image.observations.size();
-    std::printf("%s: %llu images, %llu points, %llu observations\n", arguments.colmap_folder.c_str(), count(model.images.size()),
-                count(model.points.size()), count(num_observations));
+    std::printf("%s: %llu images, %llu points, %llu observations\n", arguments.colmap_folder.c_str(), tools::llu(model.images.size()),
+                tools::llu(model.points.size()), tools::llu(num_observations));
   }
   if (!arguments.tum_path.empty()) {
-    if (const Status written = write_text(arguments.tum_path, format_tum(map, options)); !written.is_ok()) return written;
-    std::printf("%s: %llu keyframes\n", arguments.tum_path.c_str(), count(map.keyframes().size()));
+    if (const Status written = replace_file(arguments.tum_path, format_tum(map, options)); !written.is_ok()) return written;
+    std::printf("%s: %llu keyframes\n", arguments.tum_path.c_str(), tools::llu(map.keyframes().size()));
   }
   return std::fflush(stdout) == 0 ? Status::ok() : Status(ErrorCode::kIo, "cannot write to standard output");
 }
@@ -68,8 +66,7 @@ int run(const ExportArguments& arguments) {
   if (!map.is_ok()) return report_error(map.status(), 1);
   if (const Status possible = check_export(map.value(), arguments.options); !possible.is_ok()) return report_error(possible, 2);
   const Status written = write_exports(map.value(), arguments);
-  if (!written.is_ok()) return report_error(written, written.code() == ErrorCode::kInvalid ? 2 : 1);
-  return 0;
+  return report(written);
 }
 
 }  // namespace
@@ -89,4 +86,4 @@ void add_export_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

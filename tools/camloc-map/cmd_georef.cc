@@ -14,17 +14,15 @@
 #include "core/map/map_writer.h"
 #include "tools/camloc-map/commands.h"
 #include "tools/common/command_line.h"
-#include "tools/common/interrupt.h"
 #include "tools/common/output_path.h"
+#include "tools/common/terminal_observer.h"
 #include "tools/mapping/site/control_points.h"
 #include "tools/mapping/site/frame_localization.h"
 #include "tools/mapping/site/georef_fit.h"
 #include "tools/mapping/site/georef_report.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
-
-using tools::InterruptGuard;
 
 constexpr const char* kFooter =
     "Points file, coordinates of the site in metres:   name x y z [sigma_m]        (sigma 0.01 when not given)\n"
@@ -83,8 +81,8 @@ Result<ResolvedObservations> resolve(const GeorefArguments& arguments, const Map
     const Result<RgbdCamera> read = read_camera_file(arguments.camera_path);
     if (!read) return read.status();
     camera = *read;
-    const InterruptGuard guard;
-    auto localized = localize_frames(map, camera, arguments.sequence_url, observations, InterruptGuard::is_interrupted);
+    const tools::TerminalObserver observer;
+    auto localized = localize_frames(map, camera, arguments.sequence_url, observations, observer);
     if (!localized) return localized.status();
     frames = std::move(localized).value();
   }
@@ -152,11 +150,9 @@ int run(const GeorefArguments& arguments) {
   summary.observed_path = arguments.observed_path;
   summary.out_path = arguments.out_path.empty() ? arguments.map_path : arguments.out_path;
   if (const Status output = tools::check_output_path("--out", summary.out_path); !output) return report_error(output, 2);
-  if (const Status status = georef(arguments, &summary); !status) {
-    return report_error(status, status.code() == ErrorCode::kInvalid ? 2 : 1);
-  }
+  if (const Status status = georef(arguments, &summary); !status) { return report(status); }
   const std::string text = arguments.is_json ? format_json(summary) : format_table(summary);
-  const bool is_printed = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+  const bool is_printed = tools::print_text(text);
   if (!summary.fit.problem.empty()) {
     return report_error({ErrorCode::kInvalid, arguments.points_path + ": " + summary.fit.problem + "; no datum was written"}, 1);
   }
@@ -184,4 +180,4 @@ void add_georef_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -8,11 +8,11 @@
 
 #include "core/map/map_unpack.h"
 #include "tools/camloc-map/commands.h"
-#include "tools/common/interrupt.h"
 #include "tools/common/output_path.h"
+#include "tools/common/terminal_observer.h"
 #include "tools/mapping/build/merge_pipeline.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr const char* kFooter =
@@ -38,8 +38,8 @@ Status merge_files(const MergeArguments& arguments, MergeSummary* summary) {
   const MapData second = unpack_map(b.value());
   if (b.value().is_damaged()) return {ErrorCode::kCorrupt, arguments.second + ": could not be read to its end; was it changed meanwhile?"};
   summary->map_b = arguments.second;
-  const tools::InterruptGuard guard;
-  const Status merged = merge_into(arguments.first, second, arguments.options, arguments.map_path, summary);
+  tools::TerminalObserver observer;
+  const Status merged = merge_into(arguments.first, second, arguments.options, arguments.map_path, observer, summary);
   if (merged.code() == ErrorCode::kUnavailable) {
     const bool is_there = std::filesystem::exists(arguments.map_path);
     return {ErrorCode::kIo, "interrupted; " + arguments.map_path + (is_there ? " is unchanged" : " was not written")};
@@ -50,10 +50,9 @@ Status merge_files(const MergeArguments& arguments, MergeSummary* summary) {
 int run(const MergeArguments& arguments) {
   if (const Status output = tools::check_output_path("--out", arguments.map_path); !output.is_ok()) return report_error(output, 2);
   MergeSummary summary;
-  if (const Status merged = merge_files(arguments, &summary); !merged.is_ok())
-    return report_error(merged, merged.code() == ErrorCode::kInvalid ? 2 : 1);
+  if (const Status merged = merge_files(arguments, &summary); !merged.is_ok()) return report(merged);
   const std::string text = arguments.is_json ? format_json(summary) : format_table(summary);
-  return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0 ? 0 : 1;
+  return tools::print_text(text) ? 0 : 1;
 }
 
 }  // namespace
@@ -72,4 +71,4 @@ void add_merge_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

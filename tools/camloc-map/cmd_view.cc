@@ -12,7 +12,7 @@
 #include "tools/common/output_path.h"
 #include "tools/mapping/picture/map_picture.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::size_t kMaxWeakPlaces = 5;  // of each kind
@@ -39,7 +39,7 @@ Status show(const MapView& map, const ViewArguments& arguments) {
   const ColorImage image = draw_map(picture, arguments.panel, arguments.width_px);
   if (const Status written = write_png(arguments.png_path, image); !written.is_ok()) return written;
   const std::string table = format_places(map, picture.places, picture.weak);
-  const bool is_said = std::fputs(table.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+  const bool is_said = tools::print_text(table);
   return is_said ? Status::ok() : Status(ErrorCode::kIo, "cannot write to standard output");
 }
 
@@ -67,4 +67,4 @@ void add_view_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

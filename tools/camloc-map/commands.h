@@ -7,9 +7,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "core/base/result.h"
+#include "tools/common/command_line.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 void add_build_command(CLI::App& app, int& exit_code);
 void add_eval_command(CLI::App& app, int& exit_code);
@@ -18,7 +18,9 @@ void add_view_command(CLI::App& app, int& exit_code);
 void add_georef_command(CLI::App& app, int& exit_code);
 void add_merge_command(CLI::App& app, int& exit_code);
 
-/// Prints "camloc-map: <message>" on stderr and returns `exit_code`.
-int report_error(const Status& status, int exit_code);
+/// Prints "camloc-map: <message>" on stderr; the exit code that belongs to the error.
+inline int report(const Status& status) { return tools::report("camloc-map", status); }
+/// The same with another exit code.
+inline int report_error(const Status& status, int exit_code) { return report(status), exit_code; }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

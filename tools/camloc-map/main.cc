@@ -11,12 +11,12 @@ int main(int argc, char** argv) {
   CLI::App app{"Makes maps for camloc from recorded RGB-D sequences.", "camloc-map"};
   app.require_subcommand(1);
   int exit_code = 0;
-  camloc::map_tool::add_build_command(app, exit_code);
-  camloc::map_tool::add_eval_command(app, exit_code);
-  camloc::map_tool::add_export_command(app, exit_code);
-  camloc::map_tool::add_view_command(app, exit_code);
-  camloc::map_tool::add_georef_command(app, exit_code);
-  camloc::map_tool::add_merge_command(app, exit_code);
+  camloc::mapping::add_build_command(app, exit_code);
+  camloc::mapping::add_eval_command(app, exit_code);
+  camloc::mapping::add_export_command(app, exit_code);
+  camloc::mapping::add_view_command(app, exit_code);
+  camloc::mapping::add_georef_command(app, exit_code);
+  camloc::mapping::add_merge_command(app, exit_code);
   bool is_over = false;
   const int usage = camloc::tools::parse_command_line(app, argc, argv, &is_over);
   return is_over ? usage : exit_code;

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "tools/camloc-sim/building.h"
+#include "tools/camloc-sim/floor_plan.h"
 
 namespace camloc::sim {
 

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "core/io/camera_file.h"
-#include "tools/camloc-sim/text_file.h"
+#include "core/io/replace_file.h"
 
 namespace camloc::sim {
 namespace {
@@ -61,7 +61,7 @@ std::string readme(const DatasetOptions& options, const RgbdCamera& camera, cons
 Result<DatasetSummary> write_dataset(const std::string& folder, const DatasetOptions& options, const DatasetProgress& progress) {
   if (Status status = prepare_folder(folder, options.may_overwrite); !status) return status;
   const RgbdCamera camera = simulated_camera();
-  if (Status status = write_text_file(folder + "/camera.toml", format_camera_toml(camera)); !status) return status;
+  if (Status status = replace_file(folder + "/camera.toml", format_camera_toml(camera)); !status) return status;
   DatasetSummary summary;
   for (const std::uint32_t day : {1U, 2U}) {
     if (!(day == 1 ? options.has_mapping : options.has_day2)) continue;
@@ -86,7 +86,7 @@ Result<DatasetSummary> write_dataset(const std::string& folder, const DatasetOpt
     summary.num_lidar_points = *points;
     if (progress) progress("lidar", 1, 1);
   }
-  if (Status status = write_text_file(folder + "/README.txt", readme(options, camera, summary)); !status) return status;
+  if (Status status = replace_file(folder + "/README.txt", readme(options, camera, summary)); !status) return status;
   return summary;
 }
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/io/replace_file.h"
 #include "tools/camloc-sim/normal_table.h"
-#include "tools/camloc-sim/text_file.h"
 
 namespace camloc::sim {
 namespace {
@@ -51,7 +51,7 @@ Result<std::uint64_t> write_lidar_ply(const std::string& path, const Scene& scen
   const std::string header = "ply\nformat binary_little_endian 1.0\ncomment camloc-sim, metres, world frame\nelement vertex " +
                              std::to_string(count) +
                              "\nproperty float x\nproperty float y\nproperty float z\nproperty uchar intensity\nend_header\n";
-  if (Status status = write_text_file(path, header + points); !status) return status;
+  if (Status status = replace_file(path, header + points); !status) return status;
   return count;
 }
 

@@ -4,7 +4,7 @@
 // One furnished office.
 #pragma once
 
-#include "tools/camloc-sim/building.h"
+#include "tools/camloc-sim/floor_plan.h"
 
 namespace camloc::sim {
 

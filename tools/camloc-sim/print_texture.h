@@ -4,7 +4,7 @@
 // Printed and man-made detail: posters, signs, sheets, book spines, keyboards, screens, boards, cardboard boxes.
 #pragma once
 
-#include "tools/camloc-sim/texture.h"
+#include "tools/camloc-sim/skin.h"
 
 namespace camloc::sim {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/io/image_writer.h"
+#include "core/io/replace_file.h"
 #include "core/io/sequence.h"
-#include "tools/camloc-sim/text_file.h"
 
 namespace camloc::sim {
 namespace {
@@ -80,9 +80,9 @@ Status write_index(const World& world, const Timeline& times, const RecordingOpt
     if (line.empty() || line.back() != '\n') line += '\n';
     truth += line;
   }
-  if (Status status = write_text_file(folder + "/rgb.txt", rgb); !status) return status;
-  if (Status status = write_text_file(folder + "/depth.txt", depth); !status) return status;
-  return write_text_file(folder + "/groundtruth.txt", truth);
+  if (Status status = replace_file(folder + "/rgb.txt", rgb); !status) return status;
+  if (Status status = replace_file(folder + "/depth.txt", depth); !status) return status;
+  return replace_file(folder + "/groundtruth.txt", truth);
 }
 
 }  // namespace

@@ -5,42 +5,9 @@
 // point and filtered to the size of the pixel there, so that they do not shimmer when the camera moves.
 #pragma once
 
-#include <cstdint>
+#include "tools/camloc-sim/skin.h"
 
 namespace camloc::sim {
-
-enum class Material : std::uint8_t {
-  kPaint,  ///< wall paint: faint mottling and a few scuffs
-  kBlank,  ///< a wall without anything to hold on to
-  kCarpet,
-  kTiles,     ///< floor tiles with speckles
-  kLinoleum,  ///< smooth floor, little contrast
-  kCeiling,   ///< panels in a grid with pinholes
-  kWood,
-  kPoster,  ///< layout, shapes and text by seed
-  kSign,    ///< plate with a few large glyphs
-  kPaper,   ///< sheet of small text
-  kBooks,   ///< front of a bookshelf
-  kKeyboard,
-  kScreen,  ///< lit: ignores the lamps
-  kWhiteboard,
-  kPinboard,
-  kCardboard,
-  kRibs,  ///< radiator
-  kFabric,
-  kCloth,   ///< what people wear
-  kLamp,    ///< lit
-  kWindow,  ///< lit by the day outside
-  kPlain,   ///< uniform plastic or metal
-  kBrick,
-};
-
-/// One face's looks. The same skin at the same (u, v) looks the same anywhere: look-alike objects share seeds.
-struct Skin {
-  Material material = Material::kPlain;
-  std::uint32_t seed = 0;
-  float tone = 0.5F;  ///< mean grey, 0 black to 1 white, as perceived
-};
 
 /// Grey level (0 to 1, as perceived: the square root of reflectance) at (u, v) metres from the lower left corner of a face
 /// of width x height metres, averaged over about foot_m metres.

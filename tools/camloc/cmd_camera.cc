@@ -10,12 +10,12 @@
 #include <nlohmann/json.hpp>
 
 #include "core/io/camera_file.h"
+#include "core/io/replace_file.h"
 #include "drivers/openni2/installation.h"
 #include "drivers/v4l2/v4l2_list.h"
 #include "tools/camloc/commands.h"
 #include "tools/common/output_path.h"
 #include "tools/common/text_format.h"
-#include "tools/common/trajectory_file.h"
 #include "tools/doctor/usb_devices.h"
 
 namespace camloc::tools {
@@ -89,7 +89,7 @@ Status import(const CameraArguments& arguments) {
   if (!camera) return camera.status();
   if (!arguments.name.empty()) camera->name = arguments.name;
   if (arguments.depth_unit_m > 0) camera->depth_unit_m = arguments.depth_unit_m;
-  if (Status status = write_text_file(arguments.out_path, format_camera_toml(*camera)); !status) return status;
+  if (Status status = replace_file(arguments.out_path, format_camera_toml(*camera)); !status) return status;
   std::printf("%s: written; 'camloc camera show %s' shows it\n", arguments.out_path.c_str(), arguments.out_path.c_str());
   return Status::ok();
 }

@@ -13,8 +13,7 @@
 #include "core/io/camera_file.h"
 #include "tools/camloc/commands.h"
 #include "tools/common/frame_reading.h"
-#include "tools/common/interrupt.h"
-#include "tools/common/progress_line.h"
+#include "tools/common/terminal_observer.h"
 #include "tools/common/trajectory_file.h"
 #include "tools/evaluation/epipolar_error.h"
 #include "tools/evaluation/recorded_poses.h"
@@ -94,8 +93,8 @@ Status extract_features(const std::string& selection, const EpipolarArguments& a
   auto source = open_frame_source(with_selection(arguments.sequence_path, selection));
   if (!source) return source.status();
   ViewExtractor extractor(camera, orb);
-  ProgressLine progress(source.value()->info().num_frames.value_or(0));
-  const InterruptGuard guard;
+  const std::uint64_t num_frames = source.value()->info().num_frames.value_or(0);
+  TerminalObserver observer;
   std::uint64_t num_read = 0;
   const auto extract = [&](FrameBuffer& buffer) {
     const Frame frame = buffer.view();
@@ -104,12 +103,12 @@ Status extract_features(const std::string& selection, const EpipolarArguments& a
     const Rigid3 T_map_camera = view.T_map_camera;
     extractor.extract(frame, &view);
     view.T_map_camera = T_map_camera;
-    progress.show(++num_read);
+    observer.show("frame", ++num_read, num_frames, "");
     return Status::ok();
   };
-  const auto counts = read_frames(*source.value(), extract, InterruptGuard::is_interrupted);
+  const auto counts = read_frames(*source.value(), extract, observer);
   if (!counts) return counts.status();
-  if (InterruptGuard::is_interrupted()) return {ErrorCode::kUnavailable, "interrupted"};
+  if (observer.should_stop()) return {ErrorCode::kUnavailable, "interrupted"};
   return counts->are_all_corrupt() ? all_frames_corrupt(*counts) : Status::ok();
 }
 

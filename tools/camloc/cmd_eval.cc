@@ -12,6 +12,7 @@
 #include "core/map/map_view.h"
 #include "tools/camloc/commands.h"
 #include "tools/common/output_path.h"
+#include "tools/common/text_format.h"
 #include "tools/evaluation/recorded_poses.h"
 #include "tools/evaluation/top_view.h"
 #include "tools/evaluation/trajectory_error.h"
@@ -71,10 +72,9 @@ Json errors_json(const TrajectoryErrors& errors, const EstimatedTrajectory& esti
 
 void print_errors(const TrajectoryErrors& errors, const EstimatedTrajectory& estimate) {
   const auto percent = [](double share) { return 100.0 * share; };
-  std::printf("frames        %llu, localized %llu (%.1f %%), compared %llu\n", static_cast<unsigned long long>(errors.num_frames),
-              static_cast<unsigned long long>(errors.num_localized),
+  std::printf("frames        %llu, localized %llu (%.1f %%), compared %llu\n", llu(errors.num_frames), llu(errors.num_localized),
               errors.num_frames == 0 ? 0.0 : percent(static_cast<double>(errors.num_localized) / static_cast<double>(errors.num_frames)),
-              static_cast<unsigned long long>(errors.num_compared));
+              llu(errors.num_compared));
   std::printf("              %10s %10s %10s %10s %10s\n", "median", "mean", "rmse", "p90", "max");
   const auto row = [](const char* name, const ErrorStatistics& s) {
     std::printf("%-13s %10.4f %10.4f %10.4f %10.4f %10.4f\n", name, s.median, s.mean, s.rmse, s.p90, s.max);
@@ -83,8 +83,7 @@ void print_errors(const TrajectoryErrors& errors, const EstimatedTrajectory& est
   row("rotation deg", errors.rotation_deg);
   for (std::size_t i = 0; i < kErrorLimits.size(); ++i)
     std::printf("within %-12s %6.1f %% of all frames\n", kErrorLimits[i].name, percent(errors.share_within[i]));
-  std::printf("misleading    %llu (localized, but farther off than 25 cm or 10 deg)\n",
-              static_cast<unsigned long long>(errors.num_misleading));
+  std::printf("misleading    %llu (localized, but farther off than 25 cm or 10 deg)\n", llu(errors.num_misleading));
   if (errors.num_with_covariance > 0) {
     std::printf("covariance    NEES mean %.2f median %.2f (honest: 6, 5.35), %.1f %% inside the 95 %% ellipsoid\n", errors.nees_mean,
                 errors.nees_median, percent(errors.share_inside_95));
@@ -110,11 +109,8 @@ Status draw(const EvalArguments& arguments, const EstimatedTrajectory& estimate,
     view.estimate.push_back(T);
     view.error_m.push_back(truth ? (truth->translation - T.translation).norm() : 0.0);
   }
-  char title[160];
-  std::snprintf(title, sizeof title, "%llu of %llu frames localized, median %.1f cm / %.2f deg, %llu misleading",
-                static_cast<unsigned long long>(errors.num_localized), static_cast<unsigned long long>(errors.num_frames),
-                100.0 * errors.translation_m.median, errors.rotation_deg.median, static_cast<unsigned long long>(errors.num_misleading));
-  view.title = title;
+  view.title = text_of("%llu of %llu frames localized, median %.1f cm / %.2f deg, %llu misleading", llu(errors.num_localized),
+                       llu(errors.num_frames), 100.0 * errors.translation_m.median, errors.rotation_deg.median, llu(errors.num_misleading));
   return write_top_view(view, arguments.png_path);
 }
 

@@ -5,19 +5,18 @@
 #include <cstdio>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
 
+#include "core/io/replace_file.h"
 #include "tools/camloc/commands.h"
-#include "tools/common/interrupt.h"
+#include "tools/common/json_text.h"
 #include "tools/common/output_path.h"
-#include "tools/common/progress_line.h"
+#include "tools/common/terminal_observer.h"
+#include "tools/common/text_format.h"
 #include "tools/common/trajectory_file.h"
 #include "tools/evaluation/sequence_run.h"
 
 namespace camloc::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct LocalizeArguments {
   SequenceRunOptions run;
@@ -27,20 +26,7 @@ struct LocalizeArguments {
 
 Json pose_json(const Localization& result) {
   if (!result.has_pose) return nullptr;
-  const auto& t = result.T_map_camera.translation;
-  const auto& q = result.T_map_camera.rotation;
-  return {{"position_m", {t.x(), t.y(), t.z()}}, {"orientation_wxyz", {q.w(), q.x(), q.y(), q.z()}}};
-}
-
-Json covariance_json(const Localization& result) {
-  if (!result.has_pose) return nullptr;
-  Json rows = Json::array();
-  for (int row = 0; row < 6; ++row) {
-    Json values = Json::array();
-    for (int column = 0; column < 6; ++column) values.push_back(result.covariance(row, column));
-    rows.push_back(values);
-  }
-  return rows;
+  return {{"position_m", json_of(result.T_map_camera.translation)}, {"orientation_wxyz", json_of(result.T_map_camera.rotation)}};
 }
 
 Json latency_json(const Localization& result) {
@@ -57,7 +43,7 @@ Json record_json(const Localization& result) {
           {"state", to_string(result.state)},
           {"reason", to_string(result.reason)},
           {"pose", pose_json(result)},
-          {"covariance", covariance_json(result)},
+          {"covariance", result.has_pose ? json_of(result.covariance) : Json(nullptr)},
           {"quality", result.quality},
           {"tracked", result.is_tracked},
           {"features", result.num_features},
@@ -77,11 +63,10 @@ Json record_json(const Localization& result) {
 
 void print_summary(const std::map<std::string, std::uint64_t>& states, const std::map<std::string, std::uint64_t>& reasons,
                    const FrameCounts& counts, const CalibrationHealth& calibration) {
-  std::printf("frames      %llu\n", static_cast<unsigned long long>(counts.num_frames));
-  if (counts.num_corrupt > 0) std::printf("unreadable  %llu\n", static_cast<unsigned long long>(counts.num_corrupt));
-  for (const auto& [state, count] : states) std::printf("%-11s %llu\n", state.c_str(), static_cast<unsigned long long>(count));
-  for (const auto& [reason, count] : reasons)
-    std::printf("  not localized: %s: %llu\n", reason.c_str(), static_cast<unsigned long long>(count));
+  std::printf("frames      %llu\n", llu(counts.num_frames));
+  if (counts.num_corrupt > 0) std::printf("unreadable  %llu\n", llu(counts.num_corrupt));
+  for (const auto& [state, count] : states) std::printf("%-11s %llu\n", state.c_str(), llu(count));
+  for (const auto& [reason, count] : reasons) std::printf("  not localized: %s: %llu\n", reason.c_str(), llu(count));
   if (calibration.is_suspect) {
     std::printf(
         "WARNING     calibration: the images fit the map with a focal length %.1f %% %s than the camera file says; check the camera file\n",
@@ -121,10 +106,9 @@ Status write_results(const LocalizeArguments& arguments, const SequenceRun& run,
   log->trajectory.num_frames = counts.num_frames;
   if (run.camera.poses_are_of_depth_camera) log->trajectory.T_color_depth = run.camera.T_color_depth;
   if (calibration.is_suspect) log->trajectory.suspect_focal_scale = calibration.focal_scale;
-  if (Status status = write_text_file(arguments.out_path, format_trajectory(log->trajectory)); !status) return status;
+  if (Status status = replace_file(arguments.out_path, format_trajectory(log->trajectory)); !status) return status;
   if (arguments.json_path.empty()) return Status::ok();
-  const std::string text = document_json(arguments, *log, counts, calibration).dump(1, ' ', false, Json::error_handler_t::replace);
-  return write_text_file(arguments.json_path, text + "\n");
+  return replace_file(arguments.json_path, json_text(document_json(arguments, *log, counts, calibration), 1));
 }
 
 Status localize(const LocalizeArguments& arguments) {
@@ -136,18 +120,19 @@ Status localize(const LocalizeArguments& arguments) {
   if (!run) return run.status();
 
   RunLog log;
-  const InterruptGuard guard;
+  TerminalObserver observer;
   const auto counts = [&] {
-    ProgressLine progress(run->source->info().num_frames.value_or(0));
+    const std::uint64_t num_frames = run->source->info().num_frames.value_or(0);
     std::uint64_t num_done = 0;
     return read_perturbed_frames(
         *run,
         [&](const Frame& frame) {
           log.add(run->localizer->process(frame), !arguments.json_path.empty());
-          progress.show(++num_done, std::to_string(log.trajectory.poses.size()) + " localized");
+          observer.show("frame", ++num_done, num_frames, std::to_string(log.trajectory.poses.size()) + " localized");
         },
-        InterruptGuard::is_interrupted);
+        observer);
   }();
+  observer.show("", 0, 0, "");  // the summary takes its place
   if (!counts) return counts.status();
   if (Status status = write_results(arguments, *run, *counts, &log); !status) return status;
   if (InterruptGuard::is_interrupted()) {

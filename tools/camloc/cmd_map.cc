@@ -6,18 +6,16 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "core/geometry/wcs.h"
 #include "core/map/map_view.h"
 #include "tools/camloc/commands.h"
+#include "tools/common/json_text.h"
+#include "tools/common/text_format.h"
 #include "tools/evaluation/sequence_run.h"
 
 namespace camloc::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct MapArguments {
   std::string path;
@@ -38,17 +36,15 @@ PoseWithCovariance middle_in_wcs(const MapView& map) {
 }
 
 double position_sigma_m(const Matrix6d& covariance) { return std::sqrt(covariance.topLeftCorner<3, 3>().trace() / 3); }
-double turn_sigma_deg(const Matrix6d& covariance) {
-  return std::sqrt(covariance.bottomRightCorner<3, 3>().trace() / 3) * 180.0 / std::numbers::pi;
-}
+double turn_sigma_deg(const Matrix6d& covariance) { return degrees(std::sqrt(covariance.bottomRightCorner<3, 3>().trace() / 3)); }
 
 Json datum_json(const MapView& map) {
   if (!map.info().wcs) return nullptr;
   const Rigid3& T = map.info().wcs->T_wcs_map;
   const PoseWithCovariance middle = middle_in_wcs(map);
-  return {{"position_m", {T.translation.x(), T.translation.y(), T.translation.z()}},
-          {"orientation_wxyz", {T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()}},
-          {"middle_m", {middle.pose.translation.x(), middle.pose.translation.y(), middle.pose.translation.z()}},
+  return {{"position_m", json_of(T.translation)},
+          {"orientation_wxyz", json_of(T.rotation)},
+          {"middle_m", json_of(middle.pose.translation)},
           {"sigma_m", position_sigma_m(middle.covariance)},
           {"sigma_deg", turn_sigma_deg(middle.covariance)}};
 }
@@ -80,11 +76,9 @@ Json sections_json(const MapView& map) {
 
 void print_json(const MapView& map, double open_ms) {
   const MapInfo& info = map.info();
-  char id[20];
-  std::snprintf(id, sizeof id, "%016llx", static_cast<unsigned long long>(info.map_id));
   const Json json{{"path", info.path},
                   {"name", info.name},
-                  {"map_id", id},
+                  {"map_id", text_of("%016llx", llu(info.map_id))},
                   {"version", info.version},
                   {"bytes", info.file_bytes},
                   {"bytes_per_landmark", bytes_per_landmark(info)},
@@ -94,7 +88,7 @@ void print_json(const MapView& map, double open_ms) {
                   {"words", info.num_words},
                   {"cubes", info.num_cubes},
                   {"pose_sigma_m", info.pose_sigma_m},
-                  {"pose_sigma_deg", info.pose_sigma_rad * 180.0 / std::numbers::pi},
+                  {"pose_sigma_deg", degrees(info.pose_sigma_rad)},
                   {"camera", info.camera.name},
                   {"georeferenced", info.wcs.has_value()},
                   {"T_wcs_map", datum_json(map)},
@@ -114,14 +108,14 @@ void print_skipped(const MapView& map) {
 void print_table(const MapView& map, double open_ms) {
   const MapInfo& info = map.info();
   std::printf("map          %s%s%s\n", info.path.c_str(), info.name.empty() ? "" : ", ", info.name.c_str());
-  std::printf("id           %016llx, format version %u\n", static_cast<unsigned long long>(info.map_id), info.version);
+  std::printf("id           %016llx, format version %u\n", llu(info.map_id), info.version);
   std::printf("size         %.3f MB, %.1f bytes a landmark, opened in %.2f ms\n", 1e-6 * static_cast<double>(info.file_bytes),
               bytes_per_landmark(info), open_ms);
   std::printf("landmarks    %u with %u descriptors in %u cubes of coordinates\n", info.num_landmarks, info.num_descriptors, info.num_cubes);
   std::printf("keyframes    %u (the minimum set that covers all landmarks), %u words\n", info.num_keyframes, info.num_words);
   if (info.pose_sigma_m > 0) {
     std::printf("mapping      poses of the mapping are good to %.1f cm and %.2f deg per axis; none that is found in the map is better\n",
-                100.0 * info.pose_sigma_m, info.pose_sigma_rad * 180.0 / std::numbers::pi);
+                100.0 * info.pose_sigma_m, degrees(info.pose_sigma_rad));
   } else {
     std::printf("mapping      how good the poses of the mapping are is not known: too few views of the same place\n");
   }

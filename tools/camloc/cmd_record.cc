@@ -48,17 +48,15 @@ class RecordingDisplay {
     const auto now = Clock::now();
     if (progress.dropped > told_dropped_ && now - last_told_ > std::chrono::seconds(1)) {
       line_.say("");
-      print_error("camloc", text_of("writing is slower than the camera: %llu frames dropped so far",
-                                    static_cast<unsigned long long>(progress.dropped)));
+      print_error("camloc", text_of("writing is slower than the camera: %llu frames dropped so far", llu(progress.dropped)));
       told_dropped_ = progress.dropped;
       last_told_ = now;
     }
     const double seconds = std::chrono::duration<double>(now - start_).count();
     const double rate_hz = seconds > 0 ? static_cast<double>(progress.frames) / seconds : 0;
     line_.show(progress.frames, text_of("%.1f Hz  %.1f MB/s  dropped %llu  queued %d  %.1f GB free", rate_hz,
-                                        seconds > 0 ? 1e-6 * static_cast<double>(progress.bytes) / seconds : 0,
-                                        static_cast<unsigned long long>(progress.dropped), progress.queued,
-                                        1e-9 * static_cast<double>(progress.free_bytes)));
+                                        seconds > 0 ? 1e-6 * static_cast<double>(progress.bytes) / seconds : 0, llu(progress.dropped),
+                                        progress.queued, 1e-9 * static_cast<double>(progress.free_bytes)));
   }
 
  private:
@@ -79,19 +77,17 @@ Status check_space(const RecordArguments& arguments) {
   const Result<std::uint64_t> free_bytes = free_bytes_at(arguments.out_path);
   if (!free_bytes) return free_bytes.status();
   if (*free_bytes >= arguments.options.min_free_bytes) return Status::ok();
-  return {ErrorCode::kIo,
-          text_of("--out %s: %llu MB free on the disk, of which %llu stay free; free some, or lower --min-free", arguments.out_path.c_str(),
-                  static_cast<unsigned long long>(*free_bytes / 1'000'000), static_cast<unsigned long long>(arguments.min_free_mb))};
+  return {ErrorCode::kIo, text_of("--out %s: %llu MB free on the disk, of which %llu stay free; free some, or lower --min-free",
+                                  arguments.out_path.c_str(), llu(*free_bytes / 1'000'000), llu(arguments.min_free_mb))};
 }
 
 void print_count(const char* what, std::uint64_t count) {
-  if (count > 0) std::printf("  %-12s %llu\n", what, static_cast<unsigned long long>(count));
+  if (count > 0) std::printf("  %-12s %llu\n", what, llu(count));
 }
 
 void print_summary(const RecordingSummary& summary, const std::string& path) {
-  std::printf("%s: %llu frames, %llu with depth, %.1f s, %.1f MB%s\n", path.c_str(), static_cast<unsigned long long>(summary.frames),
-              static_cast<unsigned long long>(summary.frames_with_depth), summary.seconds, 1e-6 * static_cast<double>(summary.bytes),
-              summary.dropped + summary.unwritten == 0 ? ", none dropped" : "");
+  std::printf("%s: %llu frames, %llu with depth, %.1f s, %.1f MB%s\n", path.c_str(), llu(summary.frames), llu(summary.frames_with_depth),
+              summary.seconds, 1e-6 * static_cast<double>(summary.bytes), summary.dropped + summary.unwritten == 0 ? ", none dropped" : "");
   print_count("dropped", summary.dropped);
   print_count("not written", summary.unwritten);
   print_count("missed", summary.missed);
@@ -111,7 +107,7 @@ Status outcome(const RecordingSummary& summary, const std::string& path) {
   if (summary.dropped + summary.unwritten == 0) return Status::ok();
   return {ErrorCode::kIo,
           text_of("%s: incomplete, %llu frames dropped because writing was too slow; use --jpeg, a faster disk or a larger --queue",
-                  path.c_str(), static_cast<unsigned long long>(summary.dropped + summary.unwritten))};
+                  path.c_str(), llu(summary.dropped + summary.unwritten))};
 }
 
 Status run(RecordArguments arguments) {

@@ -7,7 +7,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "core/base/result.h"
+#include "tools/common/command_line.h"
 
 namespace camloc::tools {
 
@@ -23,6 +23,6 @@ void add_camera_command(CLI::App& app, int& exit_code);  ///< list, show, import
 void add_record_command(CLI::App& app, int& exit_code);
 
 /// Prints "camloc: <message>" on stderr; the exit code that belongs to the error.
-int report(const Status& status);
+inline int report(const Status& status) { return report("camloc", status); }
 
 }  // namespace camloc::tools

@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/common/command_line.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <exception>
+
+#include "tools/common/text_format.h"
 
 namespace camloc::tools {
 namespace {
@@ -38,10 +39,15 @@ int parse_command_line(CLI::App& app, int argc, const char* const* argv, bool* i
 }
 
 void print_error(const std::string& program, const std::string& message) {
-  std::string line = message;
-  std::replace_if(
-      line.begin(), line.end(), [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }, '?');
-  std::fprintf(stderr, "%s: %s\n", program.c_str(), line.c_str());
+  std::fprintf(stderr, "%s: %s\n", program.c_str(), printable(message).c_str());
 }
+
+int report(const std::string& program, const Status& status) {
+  if (status.is_ok()) return 0;
+  print_error(program, status.message());
+  return status.code() == ErrorCode::kInvalid ? 2 : 1;
+}
+
+bool print_text(const std::string& text) { return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0; }
 
 }  // namespace camloc::tools

@@ -8,6 +8,8 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "core/base/result.h"
+
 namespace camloc::tools {
 
 /// Parses and runs the callbacks. Returns 0 when the arguments were right, and the exit code otherwise; sets `is_over` when
@@ -16,5 +18,11 @@ namespace camloc::tools {
 
 /// "program: message" on stderr. Line ends and other control characters, which a file name may hold, become '?'.
 void print_error(const std::string& program, const std::string& message);
+
+/// print_error() of the message, where `status` is an error. The exit code that belongs to it: 0, 2 for kInvalid, 1 for the rest.
+int report(const std::string& program, const Status& status);
+
+/// Whether all of `text` went to stdout.
+[[nodiscard]] bool print_text(const std::string& text);
 
 }  // namespace camloc::tools

@@ -7,10 +7,10 @@
 
 namespace camloc::tools {
 
-Result<FrameCounts> read_frames(FrameSource& source, const FrameVisitor& on_frame, const std::function<bool()>& should_stop) {
+Result<FrameCounts> read_frames(FrameSource& source, const FrameVisitor& on_frame, const WorkObserver& observer) {
   FrameCounts counts;
   FrameBuffer buffer;
-  while (!should_stop || !should_stop()) {
+  while (!observer.should_stop()) {
     const Status status = source.next(&buffer, std::chrono::milliseconds(1000));
     if (status.code() == ErrorCode::kEnd) break;
     if (status.code() == ErrorCode::kTimeout) continue;

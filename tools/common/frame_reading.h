@@ -11,6 +11,7 @@
 #include <string>
 
 #include "core/base/result.h"
+#include "core/base/work_observer.h"
 #include "drivers/frame_source.h"
 
 namespace camloc::tools {
@@ -26,10 +27,10 @@ struct FrameCounts {
 /// Called with every decoded frame, whose buffer it may change; an error ends the reading and becomes its result.
 using FrameVisitor = std::function<Status(FrameBuffer&)>;
 
-/// Reads until the source ends or `should_stop` says so, which is asked before each frame. Broken frames are counted and left
-/// out; what is wrong with the source as a whole is an error.
+/// Reads until the source ends or `observer` wants to stop, which is asked before each frame; nothing is shown to it. Broken frames are
+/// counted and left out; what is wrong with the source as a whole is an error.
 [[nodiscard]] Result<FrameCounts> read_frames(FrameSource& source, const FrameVisitor& on_frame,
-                                              const std::function<bool()>& should_stop = nullptr);
+                                              const WorkObserver& observer = WorkObserver::nobody());
 
 /// kCorrupt, with what to do about it.
 [[nodiscard]] Status all_frames_corrupt(const FrameCounts& counts);

@@ -4,6 +4,7 @@
 // Numbers in tables and messages, by printf's format, in as many characters as they take.
 #pragma once
 
+#include <cstdint>
 #include <numbers>
 #include <string>
 
@@ -12,6 +13,12 @@ namespace camloc::tools {
 [[nodiscard, gnu::format(printf, 1, 2)]] std::string text_of(const char* format, ...);
 /// The same at the end of a text.
 [[gnu::format(printf, 2, 3)]] void append_text(std::string* text, const char* format, ...);
+
+/// What %llu takes.
+[[nodiscard]] constexpr unsigned long long llu(std::uint64_t value) { return value; }
+
+/// Control characters, which a name or a message may hold, become '?'.
+[[nodiscard]] std::string printable(std::string text);
 
 [[nodiscard]] inline double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 

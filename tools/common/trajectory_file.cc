@@ -10,20 +10,15 @@
 
 #include "core/io/replace_file.h"
 #include "core/io/sequence.h"
+#include "tools/common/text_format.h"
 
 namespace camloc::tools {
 namespace {
 
-std::string format_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
-
 std::string format_covariance(const Matrix6d& covariance) {
   std::string line = "# covariance";
   for (int row = 0; row < 6; ++row) {
-    for (int column = row; column < 6; ++column) line += " " + format_number(covariance(row, column));
+    for (int column = row; column < 6; ++column) line += text_of(" %.9g", covariance(row, column));
   }
   return line + "\n";
 }
@@ -80,7 +75,7 @@ std::string format_pose(const Rigid3& pose) {
   const auto& t = pose.translation;
   const auto& q = pose.rotation;
   std::string text;
-  for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) text += " " + format_number(value);
+  for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) text += text_of(" %.9g", value);
   return text;
 }
 
@@ -90,7 +85,8 @@ std::string format_trajectory(const EstimatedTrajectory& trajectory) {
   std::string text = "# timestamp tx ty tz qx qy qz qw: T_map_camera of the colour camera, LOCALIZED frames only\n";
   if (trajectory.num_frames) text += "# frames " + std::to_string(*trajectory.num_frames) + "\n";
   if (trajectory.T_color_depth) text += "# reference_camera depth" + format_pose(*trajectory.T_color_depth) + "\n";
-  if (trajectory.suspect_focal_scale) text += "# calibration suspect focal_scale " + format_number(*trajectory.suspect_focal_scale) + "\n";
+  if (trajectory.suspect_focal_scale)
+    text += "# calibration suspect focal_scale " + text_of("%.9g", *trajectory.suspect_focal_scale) + "\n";
   for (const EstimatedPose& pose : trajectory.poses) {
     if (pose.covariance) text += format_covariance(*pose.covariance);
     text += format_tum_line(pose.stamp_ns, pose.T_map_camera) + "\n";
@@ -120,7 +116,5 @@ Result<EstimatedTrajectory> read_trajectory(const std::string& path) {
   }
   return trajectory;
 }
-
-Status write_text_file(const std::string& path, const std::string& text) { return replace_file(path, std::as_bytes(std::span(text))); }
 
 }  // namespace camloc::tools

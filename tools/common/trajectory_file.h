@@ -36,7 +36,5 @@ struct EstimatedTrajectory {
 [[nodiscard]] std::string format_trajectory(const EstimatedTrajectory& trajectory);
 /// Reads both our own files and plain TUM files. Errors name file and line.
 [[nodiscard]] Result<EstimatedTrajectory> read_trajectory(const std::string& path);
-/// Writes through a temporary file, so that an old one stays whole until the new one is.
-[[nodiscard]] Status write_text_file(const std::string& path, const std::string& text);
 
 }  // namespace camloc::tools

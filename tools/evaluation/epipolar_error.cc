@@ -12,6 +12,8 @@ namespace camloc::tools {
 namespace {
 
 constexpr double kMetresPerRadian = 2.0;
+constexpr int kMinInliers = 40;      // matches that one rigid motion explains; with fewer, two images say nothing
+constexpr double kMaxErrorPx = 3.0;  // of the motion that is found from the matches alone
 
 CandidateMatcherOptions matcher_options() {
   CandidateMatcherOptions options;
@@ -19,22 +21,21 @@ CandidateMatcherOptions matcher_options() {
   return options;
 }
 
-PnpRansacOptions ransac_options(const EpipolarOptions& options, int max_pairs) {
+PnpRansacOptions ransac_options(int max_pairs) {
   PnpRansacOptions ransac;
-  ransac.max_error_px = options.max_error_px;
+  ransac.max_error_px = kMaxErrorPx;
   ransac.max_pairs = max_pairs;
   return ransac;
 }
 
 }  // namespace
 
-EpipolarMeter::EpipolarMeter(const Intrinsics& color, const OrbOptions& orb, const EpipolarOptions& options)
-    : options_(options),
-      focal_px_(color.mean_focal_px()),
+EpipolarMeter::EpipolarMeter(const Intrinsics& color, const OrbOptions& orb)
+    : focal_px_(color.mean_focal_px()),
       candidates_(static_cast<std::size_t>(orb.num_features)),
       matcher_(matcher_options(), orb.num_features, static_cast<std::size_t>(orb.num_features)),
       pairs_(static_cast<std::size_t>(orb.num_features)),
-      ransac_(ransac_options(options, orb.num_features)) {}
+      ransac_(ransac_options(orb.num_features)) {}
 
 std::optional<EpipolarError> EpipolarMeter::measure(const ViewFeatures& a, const ViewFeatures& b) {
   candidates_.clear();
@@ -48,10 +49,10 @@ std::optional<EpipolarError> EpipolarMeter::measure(const ViewFeatures& a, const
     pairs_.add(b.normalized[in_b].x(), b.normalized[in_b].y(), p.x(), p.y(), p.z(), b.depth_m[in_b], 1, match.distance, match.feature,
                match.landmark);
   }
-  if (static_cast<int>(pairs_.size()) < options_.min_inliers) return std::nullopt;
+  if (static_cast<int>(pairs_.size()) < kMinInliers) return std::nullopt;
   pairs_.sort_by_rank();
   const PnpRansacResult motion = ransac_.estimate(pairs_, focal_px_, 0);
-  if (!motion.is_found || motion.num_inliers < options_.min_inliers) return std::nullopt;
+  if (!motion.is_found || motion.num_inliers < kMinInliers) return std::nullopt;
 
   const Rigid3 T_b_a = b.T_map_camera.inverse() * a.T_map_camera;
   std::vector<double> errors_px;

@@ -16,11 +16,6 @@
 
 namespace camloc::tools {
 
-struct EpipolarOptions {
-  int min_inliers = 40;       ///< matches that one rigid motion explains; with fewer, two images say nothing
-  double max_error_px = 3.0;  ///< of the motion that is found from the matches alone
-};
-
 struct EpipolarError {
   int num_matches = 0;   ///< that one rigid motion explains
   double median_px = 0;  ///< Sampson distance under the given poses
@@ -29,14 +24,13 @@ struct EpipolarError {
 /// Measures pairs of views. Not thread-safe.
 class EpipolarMeter {
  public:
-  EpipolarMeter(const Intrinsics& color, const OrbOptions& orb, const EpipolarOptions& options = {});
+  EpipolarMeter(const Intrinsics& color, const OrbOptions& orb);
 
   /// Which matches are right is decided by the images and the depth of `a` alone (P3P and RANSAC), so that the given poses
   /// (T_map_camera of both views) are judged, never used. Nothing where the views share too little.
   [[nodiscard]] std::optional<EpipolarError> measure(const ViewFeatures& a, const ViewFeatures& b);
 
  private:
-  EpipolarOptions options_;
   double focal_px_;
   CandidateSet candidates_;
   CandidateMatcher matcher_;

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// What does not fit together is refused before the first frame: camera and images by size, texts that become part of a URL by syntax.
 #include "tools/evaluation/sequence_run.h"
 
 #include <chrono>
@@ -79,7 +81,7 @@ Result<SequenceRun> open_sequence_run(const SequenceRunOptions& options) {
 }
 
 Result<FrameCounts> read_perturbed_frames(SequenceRun& run, const std::function<void(const Frame&)>& on_frame,
-                                          const std::function<bool()>& should_stop) {
+                                          const WorkObserver& observer) {
   auto counts = read_frames(
       *run.source,
       [&](FrameBuffer& frame) {
@@ -87,7 +89,7 @@ Result<FrameCounts> read_perturbed_frames(SequenceRun& run, const std::function<
         on_frame(frame.view());
         return Status::ok();
       },
-      should_stop);
+      observer);
   if (counts && counts->are_all_corrupt()) return all_frames_corrupt(*counts);
   return counts;
 }

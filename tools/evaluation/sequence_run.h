@@ -48,7 +48,7 @@ struct SequenceRun {
 
 /// read_frames() with the perturbations applied. kCorrupt where not a single frame could be decoded.
 [[nodiscard]] Result<FrameCounts> read_perturbed_frames(SequenceRun& run, const std::function<void(const Frame&)>& on_frame,
-                                                        const std::function<bool()>& should_stop = nullptr);
+                                                        const WorkObserver& observer = WorkObserver::nobody());
 /// "3 of 60 frames could not be read ..." on stderr, in the name of `program`; nothing where there were none.
 void warn_of_corrupt_frames(const std::string& program, const FrameCounts& counts);
 

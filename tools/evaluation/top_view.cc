@@ -7,7 +7,10 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
+#include "core/base/order_statistics.h"
 #include "core/io/image_writer.h"
+#include "tools/common/map_points.h"
+#include "tools/common/text_format.h"
 
 namespace camloc::tools {
 namespace {
@@ -15,7 +18,7 @@ namespace {
 // Colours are RGB; the palette keeps apart for colour-blind readers (blue, orange, grey).
 const cv::Scalar kBackground(252, 252, 250), kInk(40, 40, 46), kGrid(226, 226, 222), kLandmark(168, 172, 180);
 const cv::Scalar kTruth(30, 30, 34), kGood(0, 114, 178), kFair(230, 159, 0), kBad(213, 60, 40), kKeyframe(120, 160, 120);
-constexpr int kMargin = 50, kHeader = 70, kFooter = 60;
+constexpr int kWidthPx = 1200, kMargin = 50, kHeader = 70, kFooter = 60;
 constexpr double kGoodM = 0.05, kFairM = 0.25;
 
 /// Map axes to picture: which axis is up, and where a metre lands.
@@ -30,26 +33,13 @@ struct Projection {
   }
 };
 
-std::vector<Eigen::Vector3d> landmark_positions(const MapView* map) {
-  std::vector<Eigen::Vector3d> points;
-  if (map == nullptr) return points;
-  for (const auto& cube : map->cubes()) {
-    for (const auto& landmark : map->landmarks().subspan(cube.first_landmark, cube.num_landmarks)) {
-      points.push_back(MapView::position_m(cube, landmark).cast<double>());
-    }
-  }
-  return points;
-}
-
 /// 1st and 99th percentile of a coordinate: a few far landmarks must not shrink the picture.
 std::pair<double, double> range_of(std::vector<double> values) {
   if (values.empty()) return {0, 1};
-  std::sort(values.begin(), values.end());
-  return {values[values.size() / 100], values[values.size() - 1 - values.size() / 100]};
+  return trimmed_range(std::move(values), 100);
 }
 
-Projection fit(const std::vector<Eigen::Vector3d>& landmarks, const std::vector<Rigid3>& truth, const std::vector<Rigid3>& estimate,
-               int width_px) {
+Projection fit(const std::vector<Eigen::Vector3d>& landmarks, const std::vector<Rigid3>& truth, const std::vector<Rigid3>& estimate) {
   std::array<std::pair<double, double>, 3> range;
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
@@ -73,7 +63,7 @@ Projection fit(const std::vector<Eigen::Vector3d>& landmarks, const std::vector<
   if (extent(projection.up) > extent(projection.right)) std::swap(projection.right, projection.up);
   projection.min_right = range[static_cast<std::size_t>(projection.right)].first;
   projection.min_up = range[static_cast<std::size_t>(projection.up)].first;
-  projection.px_per_m = (width_px - 2 * kMargin) / std::max(0.1, extent(projection.right));
+  projection.px_per_m = (kWidthPx - 2 * kMargin) / std::max(0.1, extent(projection.right));
   projection.height_px = kHeader + kFooter + static_cast<int>(extent(projection.up) * projection.px_per_m) + 1;
   return projection;
 }
@@ -89,9 +79,7 @@ void draw_scale_bar(cv::Mat& canvas, const Projection& projection) {
   const cv::Point from(kMargin, canvas.rows - 22);
   const cv::Point to = from + cv::Point(static_cast<int>(length_m * projection.px_per_m), 0);
   cv::line(canvas, from, to, kInk, 2);
-  char label[32];
-  std::snprintf(label, sizeof label, "%g m", length_m);
-  draw_text(canvas, label, to + cv::Point(8, 5), kInk);
+  draw_text(canvas, text_of("%g m", length_m), to + cv::Point(8, 5), kInk);
 }
 
 void draw_legend(cv::Mat& canvas) {
@@ -123,10 +111,10 @@ void draw_estimate(cv::Mat& canvas, const TopView& view, const Projection& proje
 
 }  // namespace
 
-Status write_top_view(const TopView& view, const std::string& path, int width_px) {
-  const std::vector<Eigen::Vector3d> landmarks = landmark_positions(view.map);
-  const Projection projection = fit(landmarks, view.truth, view.estimate, width_px);
-  cv::Mat canvas(projection.height_px, width_px, CV_8UC3, kBackground);
+Status write_top_view(const TopView& view, const std::string& path) {
+  const std::vector<Eigen::Vector3d> landmarks = view.map == nullptr ? std::vector<Eigen::Vector3d>() : landmark_positions(*view.map);
+  const Projection projection = fit(landmarks, view.truth, view.estimate);
+  cv::Mat canvas(projection.height_px, kWidthPx, CV_8UC3, kBackground);
   // Far landmarks must not run into the title and the scale.
   const cv::Rect plot(0, kHeader, canvas.cols, canvas.rows - kHeader - kFooter / 2 - 8);
   for (const auto& p : landmarks) {

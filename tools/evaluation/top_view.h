@@ -22,7 +22,7 @@ struct TopView {
 };
 
 /// Draws along the axis in which the landmarks and positions spread least (the vertical in most recordings) and writes a
-/// PNG of `width_px` pixels.
-[[nodiscard]] Status write_top_view(const TopView& view, const std::string& path, int width_px = 1200);
+/// PNG 1200 pixels wide.
+[[nodiscard]] Status write_top_view(const TopView& view, const std::string& path);
 
 }  // namespace camloc::tools

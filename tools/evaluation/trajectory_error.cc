@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Errors are taken between the reference and the estimate after an optional rigid alignment; covariances turn with it, and NEES is
+// taken in the axes of the reference.
 #include "tools/evaluation/trajectory_error.h"
 
 #include <Eigen/Cholesky>

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/order_statistics.h"
+#include "tools/common/map_points.h"
 #include "tools/common/text_format.h"
 
 namespace camloc::tools {
@@ -62,7 +63,7 @@ MapSketch::MapSketch(const std::vector<Eigen::Vector2d>& landmarks, const std::v
 
 MapSketch MapSketch::of(const MapView& map, int max_columns, int max_rows) {
   std::vector<Eigen::Vector2d> landmarks, keyframes;
-  map.for_each_position([&](const auto&, const Eigen::Vector3f& p) { landmarks.emplace_back(p.head<2>().cast<double>()); });
+  for (const Eigen::Vector3d& p : landmark_positions(map)) landmarks.emplace_back(p.head<2>());
   for (std::uint32_t k = 0; k < map.info().num_keyframes; ++k) keyframes.emplace_back(map.keyframe_pose(k).translation.head<2>());
   return MapSketch(landmarks, keyframes, max_columns, max_rows);
 }

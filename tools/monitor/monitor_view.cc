@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Text from a message passes printable() on its way to the terminal: whoever can send on the network must not drive it.
 #include "tools/monitor/monitor_view.h"
 
 #include <Eigen/Core>
@@ -7,36 +9,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <vector>
 
 #include "core/base/order_statistics.h"
+#include "tools/common/text_format.h"
 
 namespace camloc::tools {
 namespace {
 
 constexpr std::array kStageNames{"extract", "candidates", "match", "estimate", "verify", "total"};
-constexpr double kDegreesPerRadian = 57.29577951308232;
-
-__attribute__((format(printf, 1, 2))) std::string print(const char* format, ...) {
-  std::array<char, 512> text{};
-  va_list arguments;
-  va_start(arguments, format);
-  const int length = std::vsnprintf(text.data(), text.size(), format, arguments);
-  va_end(arguments);
-  return {text.data(), std::min(static_cast<std::size_t>(std::max(length, 0)), text.size() - 1)};
-}
 
 bool has_pose(const pose_t& pose) { return pose.state == pose_t::LOCALIZED || pose.state == pose_t::COASTING; }
-
-/// Control bytes of a message must not reach the terminal.
-std::string printable(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 32 || c == 127) c = '?';
-  }
-  return text;
-}
 
 double largest_sigma(const Eigen::Matrix3d& covariance) {
   if (!covariance.allFinite()) return std::nan("");
@@ -45,22 +28,22 @@ double largest_sigma(const Eigen::Matrix3d& covariance) {
 }
 
 /// As camlocd's control socket writes it: JSON numbers lose the low bits of 64-bit integers.
-std::string map_id_text(std::int64_t map_id) { return print("%016llx", static_cast<unsigned long long>(map_id)); }
+std::string map_id_text(std::int64_t map_id) { return text_of("%016llx", llu(static_cast<std::uint64_t>(map_id))); }
 
-std::string age_text(const pose_t& pose) { return pose.age_us < 0 ? "unknown" : print("%.1f ms", pose.age_us / 1e3); }
+std::string age_text(const pose_t& pose) { return pose.age_us < 0 ? "unknown" : text_of("%.1f ms", pose.age_us / 1e3); }
 
 std::vector<std::string> warnings(const MonitorState& state) {
   std::vector<std::string> texts;
-  if (state.seconds_since_pose > 1) texts.push_back(print("no pose for %.0f s", state.seconds_since_pose));
+  if (state.seconds_since_pose > 1) texts.push_back(text_of("no pose for %.0f s", state.seconds_since_pose));
   if (!state.status) return texts;
   const status_t& status = *state.status;
   if (status.is_calibration_suspect != 0) {
     texts.push_back(
-        print("calibration suspect: the images fit the map with %.3f times the focal length of the camera file", status.focal_scale));
+        text_of("calibration suspect: the images fit the map with %.3f times the focal length of the camera file", status.focal_scale));
   }
-  if (status.frames_corrupt > 0) texts.push_back(print("%lld corrupt frames", static_cast<long long>(status.frames_corrupt)));
+  if (status.frames_corrupt > 0) texts.push_back(text_of("%lld corrupt frames", static_cast<long long>(status.frames_corrupt)));
   if (status.map_reload_failures > 0) {
-    texts.push_back(print("%lld map reloads refused, the old map is kept", static_cast<long long>(status.map_reload_failures)));
+    texts.push_back(text_of("%lld map reloads refused, the old map is kept", static_cast<long long>(status.map_reload_failures)));
   }
   if (status.camera_state == "stalled") texts.push_back("the camera is silent; camlocd restarts it");
   if (status.camera_state == "missing") texts.push_back("the camera is not there; see 'camloc doctor'");
@@ -81,24 +64,24 @@ PoseSigma pose_sigma(const pose_t& pose) {
 }
 
 std::string pose_line(const pose_t& pose) {
-  std::string line = print("%lld.%06lld %-9s", static_cast<long long>(pose.utime / 1000000), static_cast<long long>(pose.utime % 1000000),
-                           state_name(pose.state).c_str());
+  std::string line = text_of("%lld.%06lld %-9s", static_cast<long long>(pose.utime / 1000000), static_cast<long long>(pose.utime % 1000000),
+                             state_name(pose.state).c_str());
   if (has_pose(pose)) {
     const PoseSigma sigma = pose_sigma(pose);
-    line += print("  %s [%+.3f %+.3f %+.3f] m  sigma %.1f cm %.2f deg  quality %d", printable(pose.parent_frame).c_str(), pose.pos[0],
-                  pose.pos[1], pose.pos[2], 100 * sigma.position_m, kDegreesPerRadian * sigma.rotation_rad, static_cast<int>(pose.quality));
+    line += text_of("  %s [%+.3f %+.3f %+.3f] m  sigma %.1f cm %.2f deg  quality %d", printable(pose.parent_frame).c_str(), pose.pos[0],
+                    pose.pos[1], pose.pos[2], 100 * sigma.position_m, degrees(sigma.rotation_rad), static_cast<int>(pose.quality));
   }
   if (pose.state != pose_t::LOCALIZED) line += "  " + printable(pose.reason_text);
-  line += print("  inliers %d/%d", pose.num_inliers, pose.num_matches);
-  line += print("  latency %.1f ms  age %s", pose.latency_us[5] / 1e3, age_text(pose).c_str());
+  line += text_of("  inliers %d/%d", pose.num_inliers, pose.num_matches);
+  line += text_of("  latency %.1f ms  age %s", pose.latency_us[5] / 1e3, age_text(pose).c_str());
   return line;
 }
 
 std::string status_line(const status_t& status) {
-  std::string line = print("status %s", state_name(status.state).c_str());
+  std::string line = text_of("status %s", state_name(status.state).c_str());
   line += "  " + printable(status.state_text) + "  source " + printable(status.source) + "  map " + printable(status.map_path);
-  line += print("  camera %s  %.1f Hz  dropped %lld  %.1f MB", printable(status.camera_state).c_str(), status.frame_rate_hz,
-                static_cast<long long>(status.frames_dropped), static_cast<double>(status.rss_bytes) / 1e6);
+  line += text_of("  camera %s  %.1f Hz  dropped %lld  %.1f MB", printable(status.camera_state).c_str(), status.frame_rate_hz,
+                  static_cast<long long>(status.frames_dropped), static_cast<double>(status.rss_bytes) / 1e6);
   MonitorState only_status;
   only_status.status = status;
   for (const auto& warning : warnings(only_status)) line += "  WARNING: " + warning;
@@ -187,18 +170,18 @@ std::string pose_part(const MonitorState& state) {
       "state     " + state_name(pose.state) + (pose.reason_text.empty() ? "" : "  (" + printable(pose.reason_text) + ")") + "\n";
   if (has_pose(pose)) {
     const PoseSigma sigma = pose_sigma(pose);
-    screen += print("position  %+9.3f %+9.3f %+9.3f m in %s, sigma %.1f cm\n", pose.pos[0], pose.pos[1], pose.pos[2],
-                    printable(pose.parent_frame).c_str(), 100 * sigma.position_m);
-    screen += print("rotation  %+9.4f %+9.4f %+9.4f %+9.4f (w x y z), sigma %.2f deg\n", pose.orientation[0], pose.orientation[1],
-                    pose.orientation[2], pose.orientation[3], kDegreesPerRadian * sigma.rotation_rad);
+    screen += text_of("position  %+9.3f %+9.3f %+9.3f m in %s, sigma %.1f cm\n", pose.pos[0], pose.pos[1], pose.pos[2],
+                      printable(pose.parent_frame).c_str(), 100 * sigma.position_m);
+    screen += text_of("rotation  %+9.4f %+9.4f %+9.4f %+9.4f (w x y z), sigma %.2f deg\n", pose.orientation[0], pose.orientation[1],
+                      pose.orientation[2], pose.orientation[3], degrees(sigma.rotation_rad));
   } else {
     screen += "position  none\nrotation  none\n";
   }
-  screen += print("quality   %d, %d inliers of %d matches of %d features\n", static_cast<int>(pose.quality), pose.num_inliers,
-                  pose.num_matches, pose.num_features);
-  screen += print("poses     %lld, %.1f %% localized, %.1f Hz, %d resets\n", state.num_poses,
-                  100.0 * static_cast<double>(state.num_localized) / static_cast<double>(std::max(1LL, state.num_poses)), state.rate_hz,
-                  pose.reset_counter);
+  screen += text_of("quality   %d, %d inliers of %d matches of %d features\n", static_cast<int>(pose.quality), pose.num_inliers,
+                    pose.num_matches, pose.num_features);
+  screen += text_of("poses     %lld, %.1f %% localized, %.1f Hz, %d resets\n", state.num_poses,
+                    100.0 * static_cast<double>(state.num_localized) / static_cast<double>(std::max(1LL, state.num_poses)), state.rate_hz,
+                    pose.reset_counter);
   return screen;
 }
 
@@ -206,9 +189,9 @@ std::string latency_part(const MonitorState& state) {
   std::string names = "latency ", medians = "  p50 ms", worst = "  p99 ms";
   for (std::size_t stage = 0; stage < kStageNames.size(); ++stage) {
     const StageLatencies::Summary summary = state.latencies.of(stage);
-    names += print(" %10s", kStageNames[stage]);
-    medians += print(" %10.2f", summary.median_ms);
-    worst += print(" %10.2f", summary.p99_ms);
+    names += text_of(" %10s", kStageNames[stage]);
+    medians += text_of(" %10.2f", summary.median_ms);
+    worst += text_of(" %10.2f", summary.p99_ms);
   }
   return names + "\n" + medians + "\n" + worst + "\n" + "  capture to publishing " + age_text(*state.pose) + "\n";
 }
@@ -216,14 +199,14 @@ std::string latency_part(const MonitorState& state) {
 std::string camera_part(const status_t& status) {
   const auto count = [](std::int64_t value) { return static_cast<long long>(value); };
   std::string screen = "camera    " + (status.camera_state.empty() ? "" : printable(status.camera_state) + ", ") +
-                       printable(status.source) + print(", %.1f Hz\n", status.frame_rate_hz);
-  screen += print("  frames  %lld received, %lld dropped, %lld corrupt, %lld incomplete, %lld unpaired, %lld packets lost\n",
-                  count(status.frames_received), count(status.frames_dropped), count(status.frames_corrupt),
-                  count(status.frames_incomplete), count(status.frames_unpaired), count(status.packets_lost));
-  screen += print("  recovery %lld stalls: %lld stream restarts, %lld opened again, %lld resets", count(status.camera_stalls),
-                  count(status.stream_restarts), count(status.device_reopens), count(status.device_resets));
-  if (status.last_recovery_ms > 0) screen += print("; the last took %.0f ms", status.last_recovery_ms);
-  if (status.clock_drift_ppm != 0) screen += print("; clock %+.1f ppm", status.clock_drift_ppm);
+                       printable(status.source) + text_of(", %.1f Hz\n", status.frame_rate_hz);
+  screen += text_of("  frames  %lld received, %lld dropped, %lld corrupt, %lld incomplete, %lld unpaired, %lld packets lost\n",
+                    count(status.frames_received), count(status.frames_dropped), count(status.frames_corrupt),
+                    count(status.frames_incomplete), count(status.frames_unpaired), count(status.packets_lost));
+  screen += text_of("  recovery %lld stalls: %lld stream restarts, %lld opened again, %lld resets", count(status.camera_stalls),
+                    count(status.stream_restarts), count(status.device_reopens), count(status.device_resets));
+  if (status.last_recovery_ms > 0) screen += text_of("; the last took %.0f ms", status.last_recovery_ms);
+  if (status.clock_drift_ppm != 0) screen += text_of("; clock %+.1f ppm", status.clock_drift_ppm);
   return screen + "\n";
 }
 
@@ -235,9 +218,9 @@ std::string monitor_screen(const MonitorState& state) {
     const status_t& status = *state.status;
     screen += camera_part(status);
     screen += "map       " + printable(status.map_path) +
-              print(", id %s, %lld reloads\n", map_id_text(status.map_id).c_str(), static_cast<long long>(status.map_reloads));
-    screen += print("daemon    up %.0f s, capture to pose p50 %.1f max %.1f ms, %.1f MB\n", static_cast<double>(status.uptime_us) / 1e6,
-                    status.latency_p50_ms, status.latency_max_ms, static_cast<double>(status.rss_bytes) / 1e6);
+              text_of(", id %s, %lld reloads\n", map_id_text(status.map_id).c_str(), static_cast<long long>(status.map_reloads));
+    screen += text_of("daemon    up %.0f s, capture to pose p50 %.1f max %.1f ms, %.1f MB\n", static_cast<double>(status.uptime_us) / 1e6,
+                      status.latency_p50_ms, status.latency_max_ms, static_cast<double>(status.rss_bytes) / 1e6);
   }
   for (const auto& warning : warnings(state)) screen += "WARNING   " + warning + "\n";
   return screen + state.sketch;

@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Frames get a ticket when they come; a writer that is done puts its result aside until all earlier tickets are in the index. The
+// lock is held to exchange buffers and to append lines, never while an image is encoded.
 #include "tools/recording/frame_writers.h"
 
 #include <cassert>

@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// The loop of the calling thread: take a frame, judge it (image there, later than the last, within the limits), hand it to the
+// writers. Every frame that does not reach the disk is counted under the reason.
 #include "tools/recording/recorder.h"
 
 #include <chrono>

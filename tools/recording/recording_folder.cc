@@ -16,8 +16,8 @@
 
 #include "core/geometry/gravity.h"
 #include "core/io/camera_file.h"
+#include "core/io/replace_file.h"
 #include "tools/common/text_format.h"
-#include "tools/common/trajectory_file.h"
 
 namespace camloc::tools {
 namespace {
@@ -163,7 +163,7 @@ Status RecordingFolder::append_acceleration(std::int64_t stamp_ns, const Eigen::
 }
 
 Status RecordingFolder::write_camera(const RgbdCamera& camera) const {
-  return write_text_file(path_ + "/camera.toml", format_camera_toml(camera));
+  return replace_file(path_ + "/camera.toml", format_camera_toml(camera));
 }
 
 Status RecordingFolder::sync() const {

@@ -3,21 +3,21 @@
 #include "tools/mapping/build/build_report.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
+#include "tools/common/json_text.h"
 #include "tools/common/text_format.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using tools::append_text;
 using tools::degrees;
+using tools::Json;
+using tools::llu;
 
 double bytes_per_landmark(const BuildSummary& s) {
   return static_cast<double>(s.build.file_bytes) / static_cast<double>(std::max<std::uint32_t>(s.build.num_landmarks, 1));
 }
-
-unsigned long long count(std::uint64_t value) { return value; }
 
 constexpr std::size_t kMaxSpotsShown = 8;
 
@@ -39,7 +39,7 @@ void append_slam(const BuildSummary& s, std::string* text) {
               c.num_views / std::max(c.num_keyframes, 1U));
   append_text(text, "%-22s%u closed, %u refused\n", "loops", c.num_loops, c.num_loops_refused);
   append_text(text, "%-22smedian %.2f px, 90 %% below %.2f px (%llu sightings)\n", "reprojection error", slam.fit.median_px,
-              slam.fit.p90_px, count(slam.fit.num_sightings));
+              slam.fit.p90_px, llu(slam.fit.num_sightings));
   append_text(text, "%-22smedian %.1f mm\n", "depth error", 1000 * slam.fit.median_depth_m);
   append_text(text, "%-22s%s\n", "vertical", vertical_text(s).c_str());
 }
@@ -64,13 +64,13 @@ void append_weak_spots(const std::vector<WeakSpot>& all, std::string* text) {
   std::sort(shown.begin(), shown.end(), [](const WeakSpot& a, const WeakSpot& b) { return a.first_frame < b.first_frame; });
   append_text(text, "weak spots (%zu%s)\n", all.size(), all.size() > shown.size() ? ", the longest shown" : "");
   for (const WeakSpot& w : shown) {
-    append_text(text, "  frames %llu to %llu: %s; %s\n", count(w.first_frame), count(w.last_frame), w.what.c_str(), w.advice.c_str());
+    append_text(text, "  frames %llu to %llu: %s; %s\n", llu(w.first_frame), llu(w.last_frame), w.what.c_str(), w.advice.c_str());
   }
 }
 
-nlohmann::ordered_json slam_json(const SlamSummary& slam) {
+Json slam_json(const SlamSummary& slam) {
   const SlamCounts& c = slam.counts;
-  nlohmann::ordered_json json;
+  Json json;
   json["views"] = c.num_views;
   json["lost"] = c.num_lost;
   json["losses"] = c.num_losses;
@@ -88,7 +88,7 @@ nlohmann::ordered_json slam_json(const SlamSummary& slam) {
                   {"sigma_deg", degrees(slam.up->sigma_rad)}};
   else
     json["up"] = nullptr;
-  json["weak_spots"] = nlohmann::ordered_json::array();
+  json["weak_spots"] = Json::array();
   for (const WeakSpot& w : slam.weak_spots)
     json["weak_spots"].push_back({{"first_frame", w.first_frame}, {"last_frame", w.last_frame}, {"what", w.what}, {"advice", w.advice}});
   return json;
@@ -100,18 +100,17 @@ std::string format_table(const BuildSummary& s) {
   const MapBuildReport& b = s.build;
   std::string text;
   append_text(&text, "%-22s%s\n", "map", s.map_path.c_str());
-  append_text(&text, "%-22s%u of %llu recorded, %llu selected\n", "frames used", b.num_frames, count(s.num_recorded),
-              count(s.num_selected));
-  append_text(&text, "%-22s%llu without pose, %llu without depth, %llu broken\n", "frames skipped", count(s.num_without_pose),
-              count(s.num_without_depth), count(s.reading.num_corrupt));
+  append_text(&text, "%-22s%u of %llu recorded, %llu selected\n", "frames used", b.num_frames, llu(s.num_recorded), llu(s.num_selected));
+  append_text(&text, "%-22s%llu without pose, %llu without depth, %llu broken\n", "frames skipped", llu(s.num_without_pose),
+              llu(s.num_without_depth), llu(s.reading.num_corrupt));
   if (s.slam) append_slam(s, &text);
   if (s.model_scale) append_text(&text, "%-22s%s\n", "scale of the model", describe_scale(*s.model_scale).c_str());
-  append_text(&text, "%-22s%llu\n", "observations", count(b.num_observations));
+  append_text(&text, "%-22s%llu\n", "observations", llu(b.num_observations));
   append_text(&text, "%-22s%u of %u\n", "landmarks kept", b.num_landmarks, b.num_landmarks_before);
   append_text(&text, "%-22s%u\n", "descriptors", b.num_descriptors);
   append_text(&text, "%-22s%u of %u views cover all landmarks\n", "keyframes", b.num_keyframes, b.num_keyframes_before);
   append_text(&text, "%-22s%u\n", "words", b.num_words);
-  append_text(&text, "%-22s%llu bytes, %.1f a landmark\n", "size", count(b.file_bytes), bytes_per_landmark(s));
+  append_text(&text, "%-22s%llu bytes, %.1f a landmark\n", "size", llu(b.file_bytes), bytes_per_landmark(s));
   if (s.bend.sigma_m > 0) {
     append_text(&text, "%-22s%.1f cm, %.2f deg per axis (maps of half of the sightings differ by twice that)\n", "bend of the map",
                 100 * s.bend.sigma_m, degrees(s.bend.sigma_rad));
@@ -133,7 +132,7 @@ std::string format_table(const BuildSummary& s) {
 
 std::string format_json(const BuildSummary& s) {
   const MapBuildReport& b = s.build;
-  nlohmann::ordered_json json;
+  Json json;
   json["map"] = s.map_path;
   json["sequence"] = s.sequence;
   json["camera"] = s.camera;
@@ -148,8 +147,8 @@ std::string format_json(const BuildSummary& s) {
                            {"pairs", s.model_scale->num_pairs},
                            {"images", s.model_scale->num_images}};
   }
-  if (s.survey) json["survey"] = nlohmann::ordered_json::parse(format_json(*s.survey));
-  json["submaps"] = nlohmann::ordered_json::array();
+  if (s.survey) json["survey"] = Json::parse(format_json(*s.survey));
+  json["submaps"] = Json::array();
   for (const SubmapSummary& submap : s.submaps)
     json["submaps"].push_back({{"map", submap.map_path}, {"keyframes", submap.num_keyframes}, {"views", submap.num_views}});
   json["observations"] = b.num_observations;
@@ -163,9 +162,9 @@ std::string format_json(const BuildSummary& s) {
       {"pairs", b.num_consistency_pairs}, {"sigma_m", s.consistency_sigma_m}, {"sigma_deg", degrees(s.consistency_sigma_rad)}};
   json["bend"] = nullptr;
   if (s.bend.sigma_m > 0) json["bend"] = {{"sigma_m", s.bend.sigma_m}, {"sigma_deg", degrees(s.bend.sigma_rad)}};
-  if (s.merge) json["merge"] = nlohmann::ordered_json::parse(format_json(*s.merge), nullptr, false);
+  if (s.merge) json["merge"] = Json::parse(format_json(*s.merge), nullptr, false);
   json["seconds"] = s.seconds;
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return tools::json_text(json);
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -19,7 +19,7 @@
 #include "tools/mapping/colmap/colmap_scale.h"
 #include "tools/mapping/site/georef_report.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 /// What SLAM says about a walk without poses.
 struct SlamSummary {
@@ -57,4 +57,4 @@ struct BuildSummary {
 [[nodiscard]] std::string format_table(const BuildSummary& summary);
 [[nodiscard]] std::string format_json(const BuildSummary& summary);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -1,5 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Two ways to a map. With poses (build_from_poses): every posed frame goes into the map builder. Without (build_from_walk): SLAM
+// finds the poses in a first pass that logs what it sees, the walk is placed in the site or turned upright, and a second pass over
+// the log feeds the builder. Both end in finish_map, which writes, or merges into the map that is extended.
 #include "tools/mapping/build/map_pipeline.h"
 
 #include <chrono>
@@ -7,20 +11,16 @@
 #include <filesystem>
 #include <unordered_map>
 
+#include "core/io/replace_file.h"
 #include "core/map/map_writer.h"
 #include "tools/common/frame_reading.h"
-#include "tools/common/interrupt.h"
-#include "tools/common/progress_line.h"
 #include "tools/common/trajectory_file.h"
 #include "tools/mapping/build/merge_pipeline.h"
 #include "tools/mapping/build/view_log.h"
 #include "tools/mapping/build/walk_tracking.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
-
-using tools::InterruptGuard;
-using tools::ProgressLine;
 
 constexpr std::uint32_t kMinSegmentKeyframes = 4;  // a shorter stretch is no sub-map
 
@@ -38,6 +38,8 @@ std::string segment_path(const std::string& map_path, std::size_t number) {
   return (path.parent_path() / (path.stem().string() + "." + std::to_string(number + 1) + path.extension().string())).string();
 }
 
+std::string landmarks_note(const MapBuilder& builder) { return std::to_string(builder.progress().num_landmarks_before) + " landmarks"; }
+
 /// What is going to be merged is chosen from once, after merging.
 MapBuildOptions recording_options(const BuildRequest& request) {
   MapBuildOptions options = request.map;
@@ -45,16 +47,17 @@ MapBuildOptions recording_options(const BuildRequest& request) {
   return options;
 }
 
-Status extend_map(const BuildRequest& request, const MapData& recorded, BuildSummary* summary) {
+Status extend_map(const BuildRequest& request, const MapData& recorded, WorkObserver& observer, BuildSummary* summary) {
   summary->merge.emplace().map_b = request.frames.sequence;
   MapMergeOptions options;
   options.map.max_bytes = request.map.max_bytes;
-  const Status merged = merge_into(request.extend_path, recorded, options, request.map_path, &*summary->merge);
+  const Status merged = merge_into(request.extend_path, recorded, options, request.map_path, observer, &*summary->merge);
   return merged.code() == ErrorCode::kUnavailable ? interrupted_status(request.map_path) : merged;
 }
 
 Status finish_map(const BuildRequest& request, const std::string& name, const std::string& path, const std::optional<WcsDatum>& datum,
-                  const MapUncertainty& bend, MapBuilder* builder, BuildSummary* summary) {
+                  const MapUncertainty& bend, MapBuilder* builder, WorkObserver& observer, BuildSummary* summary) {
+  observer.show("choosing landmarks and keyframes, training words ...", 0, 0, "");
   auto map = builder->finish(&summary->build);
   if (!map.is_ok()) return map.status();
   summary->consistency_sigma_m = map->pose_sigma_m;
@@ -65,7 +68,7 @@ Status finish_map(const BuildRequest& request, const std::string& name, const st
   map->name = name;
   map->wcs = datum;
   const bool is_extension = !request.extend_path.empty() && path == request.map_path;
-  const Status written = is_extension ? extend_map(request, map.value(), summary) : write_map(map.value(), path);
+  const Status written = is_extension ? extend_map(request, map.value(), observer, summary) : write_map(map.value(), path);
   if (!written.is_ok()) return written;
   summary->map_path = path;
   return Status::ok();
@@ -74,25 +77,25 @@ Status finish_map(const BuildRequest& request, const std::string& name, const st
 // --- Poses are given -------------------------------------------------------------------------------------------------
 
 /// Feeds every posed frame to the builder. Broken frames are counted, a wrong image size ends the build.
-Status add_frames(const PosedFrames& frames, MapBuilder* builder, BuildSummary* summary, ProgressLine* progress) {
+Status add_frames(const PosedFrames& frames, MapBuilder* builder, WorkObserver& observer, BuildSummary* summary) {
   auto source = open_frame_source(frames.url);
   if (!source.is_ok()) return source.status();
   std::uint64_t done = 0;
   const auto add = [&](FrameBuffer& buffer) {
-    progress->show(++done, std::to_string(builder->progress().num_landmarks_before) + " landmarks");
+    observer.show("frame", ++done, frames.T_map_camera_of_frame.size(), landmarks_note(*builder));
     const auto pose = frames.T_map_camera_of_frame.find(buffer.sequence);
     if (pose == frames.T_map_camera_of_frame.end()) return Status::ok();
     if (!buffer.depth.pixels.empty() && buffer.depth.width > 0) return builder->add_frame(buffer.view(), pose->second);
     ++summary->num_without_depth;
     return Status::ok();
   };
-  auto counts = tools::read_frames(*source.value(), add, InterruptGuard::is_interrupted);
+  auto counts = tools::read_frames(*source.value(), add, observer);
   if (!counts) return counts.status();
   summary->reading = std::move(counts).value();
   return Status::ok();
 }
 
-Status build_from_poses(const BuildRequest& request, BuildSummary* summary) {
+Status build_from_poses(const BuildRequest& request, WorkObserver& observer, BuildSummary* summary) {
   const auto frames = find_posed_frames(request.frames, request.camera);
   if (!frames.is_ok()) return frames.status();
   summary->num_recorded = frames->num_recorded;
@@ -100,13 +103,11 @@ Status build_from_poses(const BuildRequest& request, BuildSummary* summary) {
   summary->num_without_pose = frames->num_without_pose;
   summary->model_scale = frames->scale;
   MapBuilder builder(request.camera, recording_options(request));
-  ProgressLine progress(frames->T_map_camera_of_frame.size());
-  if (const Status added = add_frames(frames.value(), &builder, summary, &progress); !added.is_ok()) return added;
-  if (InterruptGuard::is_interrupted()) return interrupted_status(request.map_path);
+  if (const Status added = add_frames(frames.value(), &builder, observer, summary); !added.is_ok()) return added;
+  if (observer.should_stop()) return interrupted_status(request.map_path);
   if (summary->reading.are_all_corrupt()) return tools::all_frames_corrupt(summary->reading);
-  progress.say("choosing landmarks and keyframes, training words ...");
   return finish_map(request, request.name.empty() ? folder_name(frames->folder) : request.name, request.map_path, std::nullopt, {},
-                    &builder, summary);
+                    &builder, observer, summary);
 }
 
 // --- SLAM finds the poses --------------------------------------------------------------------------------------------
@@ -141,9 +142,9 @@ Result<Walk> prepare_walk(const BuildRequest& request) {
 }
 
 /// The first pass, and everything that is known only after it: poses, refusals, weak spots.
-Status find_poses(const BuildRequest& request, Slam* slam, Walk* walk, BuildSummary* summary) {
+Status find_poses(const BuildRequest& request, Slam* slam, Walk* walk, WorkObserver& observer, BuildSummary* summary) {
   WalkCheck check(request.camera);
-  auto end = track_walk(walk->pass, slam, &check);
+  auto end = track_walk(walk->pass, slam, &check, observer);
   if (!end.is_ok()) return end.status();
   walk->end = std::move(end).value();
   // A map that is extended is not touched by half a walk.
@@ -151,9 +152,8 @@ Status find_poses(const BuildRequest& request, Slam* slam, Walk* walk, BuildSumm
   summary->is_partial = walk->end.is_interrupted;
   summary->reading = walk->end.reading;
   summary->num_without_depth = walk->end.num_without_depth;
-  const ProgressLine progress(0, "adjusting");
   walk->result = slam->finish([&](int iteration, double) {
-    progress.say("adjusting all keyframes and landmarks, iteration " + std::to_string(iteration) + " ...");
+    observer.show("adjusting all keyframes and landmarks, iteration " + std::to_string(iteration) + " ...", 0, 0, "");
     return true;
   });
   Status usable = check.verdict(walk->result);
@@ -193,15 +193,15 @@ Status place_walk(const BuildRequest& request, Slam* slam, Walk* walk, BuildSumm
 }
 
 /// What every pose in the maps will be uncertain by.
-void measure_bend(const Slam& slam, SlamResult* result) {
-  ProgressLine(0, "adjusting").say("comparing maps of half of the sightings each ...");
+void measure_bend(const Slam& slam, WorkObserver& observer, SlamResult* result) {
+  observer.show("comparing maps of half of the sightings each ...", 0, 0, "");
   for (SlamResult::Segment& segment : result->segments) {
     if (segment.num_keyframes >= kMinSegmentKeyframes) segment.uncertainty = slam.uncertainty(segment.id);
   }
 }
 
 /// The second pass: what was seen, from where it was seen, becomes a map.
-Status map_segment(const BuildRequest& request, const Walk& walk, std::size_t number, BuildSummary* summary) {
+Status map_segment(const BuildRequest& request, const Walk& walk, std::size_t number, WorkObserver& observer, BuildSummary* summary) {
   std::unordered_map<std::uint64_t, const SlamPose*> pose_of_frame;
   for (const SlamPose& pose : walk.result.poses) {
     if (pose.segment == walk.result.segments[number].id) pose_of_frame.emplace(pose.frame, &pose);
@@ -209,7 +209,6 @@ Status map_segment(const BuildRequest& request, const Walk& walk, std::size_t nu
   auto log = ViewLogReader::open(walk.pass.log_path, walk_identity(walk.pass));
   if (!log.is_ok()) return log.status();
   MapBuilder builder(request.camera, recording_options(request));
-  ProgressLine progress(pose_of_frame.size(), "mapping view");
   LoggedView logged;
   std::uint64_t done = 0;
   while (log->next(&logged).is_ok()) {
@@ -217,27 +216,26 @@ Status map_segment(const BuildRequest& request, const Walk& walk, std::size_t nu
     if (pose == pose_of_frame.end()) continue;
     logged.view.T_map_camera = pose->second->T_map_camera;
     builder.add_view(logged.view);
-    progress.show(++done, std::to_string(builder.progress().num_landmarks_before) + " landmarks");
+    observer.show("mapping view", ++done, pose_of_frame.size(), landmarks_note(builder));
   }
   if (done < pose_of_frame.size()) {
     return {ErrorCode::kCorrupt, walk.pass.log_path + ": holds " + std::to_string(done) + " of " + std::to_string(pose_of_frame.size()) +
                                      " views; is another build of the same map running?"};
   }
-  progress.say("choosing landmarks and keyframes, training words ...");
   const std::string name = request.name.empty() ? folder_name(walk.frames.folder) : request.name;
   return finish_map(request, name, segment_path(request.map_path, number), number == 0 ? walk.datum : std::nullopt,
-                    walk.result.segments[number].uncertainty, &builder, summary);
+                    walk.result.segments[number].uncertainty, &builder, observer, summary);
 }
 
 /// One map a segment, the largest at the path the user asked for. Returns an error only for that one.
-Status write_segments(const BuildRequest& request, const Walk& walk, BuildSummary* summary) {
+Status write_segments(const BuildRequest& request, const Walk& walk, WorkObserver& observer, BuildSummary* summary) {
   for (std::size_t number = walk.result.segments.size(); number-- > 0;) {
     const SlamResult::Segment& segment = walk.result.segments[number];
-    if (number == 0) return map_segment(request, walk, number, summary);
+    if (number == 0) return map_segment(request, walk, number, observer, summary);
     SubmapSummary submap{"", segment.num_keyframes, segment.num_views};
     if (segment.num_keyframes >= kMinSegmentKeyframes) {
       BuildSummary of_segment;
-      if (map_segment(request, walk, number, &of_segment).is_ok()) submap.map_path = of_segment.map_path;
+      if (map_segment(request, walk, number, observer, &of_segment).is_ok()) submap.map_path = of_segment.map_path;
     }
     summary->submaps.push_back(submap);
   }
@@ -252,10 +250,10 @@ Status write_trajectory(const BuildRequest& request, const SlamResult& result, s
   for (const SlamPose& pose : result.poses) {
     if (pose.segment == result.segments.front().id) trajectory.poses.push_back({pose.stamp_ns, pose.T_map_camera, std::nullopt});
   }
-  return tools::write_text_file(request.trajectory_path, format_trajectory(trajectory));
+  return replace_file(request.trajectory_path, format_trajectory(trajectory));
 }
 
-Status build_from_walk(const BuildRequest& request, BuildSummary* summary) {
+Status build_from_walk(const BuildRequest& request, WorkObserver& observer, BuildSummary* summary) {
   auto prepared = prepare_walk(request);
   if (!prepared.is_ok()) return prepared.status();
   Walk walk = std::move(prepared).value();
@@ -263,11 +261,11 @@ Status build_from_walk(const BuildRequest& request, BuildSummary* summary) {
   summary->num_selected = walk.frames.num_selected;
   {
     Slam slam(request.camera, walk.pass.slam);  // gone before the map takes its place in memory
-    if (const Status found = find_poses(request, &slam, &walk, summary); !found.is_ok()) return found;
+    if (const Status found = find_poses(request, &slam, &walk, observer, summary); !found.is_ok()) return found;
     if (const Status placed = place_walk(request, &slam, &walk, summary); !placed.is_ok()) return placed;
-    measure_bend(slam, &walk.result);
+    measure_bend(slam, observer, &walk.result);
   }
-  if (const Status written = write_segments(request, walk, summary); !written.is_ok()) return written;
+  if (const Status written = write_segments(request, walk, observer, summary); !written.is_ok()) return written;
   if (const Status written = write_trajectory(request, walk.result, summary->slam->counts.num_views); !written.is_ok()) return written;
   if (!summary->is_partial) std::filesystem::remove(walk.pass.log_path);
   return Status::ok();
@@ -277,15 +275,15 @@ Status build_from_walk(const BuildRequest& request, BuildSummary* summary) {
 
 std::string view_log_path(const std::string& map_path) { return map_path + ".views"; }
 
-Status build_map(const BuildRequest& request, BuildSummary* summary) {
+Status build_map(const BuildRequest& request, WorkObserver& observer, BuildSummary* summary) {
   const auto start = std::chrono::steady_clock::now();
-  const InterruptGuard guard;
   summary->map_path = request.map_path;
   summary->sequence = request.frames.sequence;
   summary->camera = request.camera.name;
-  const Status built = request.frames.poses.empty() ? build_from_walk(request, summary) : build_from_poses(request, summary);
+  const Status built =
+      request.frames.poses.empty() ? build_from_walk(request, observer, summary) : build_from_poses(request, observer, summary);
   summary->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return built;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

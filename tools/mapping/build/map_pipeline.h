@@ -15,7 +15,7 @@
 #include "tools/mapping/build/posed_frames.h"
 #include "tools/mapping/build/walk_site.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 struct BuildRequest {
   PosedFramesRequest frames;  ///< `poses` empty: SLAM finds them
@@ -34,9 +34,9 @@ struct BuildRequest {
 
 /// Makes the map and says what came of it. Errors: kInvalid for what the user can change in the request or the recording. An
 /// existing map at the path is replaced by a complete one or stays as it is.
-[[nodiscard]] Status build_map(const BuildRequest& request, BuildSummary* summary);
+[[nodiscard]] Status build_map(const BuildRequest& request, WorkObserver& observer, BuildSummary* summary);
 
 /// The view log of a build, beside its map.
 [[nodiscard]] std::string view_log_path(const std::string& map_path);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

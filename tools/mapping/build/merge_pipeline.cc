@@ -3,51 +3,22 @@
 #include "tools/mapping/build/merge_pipeline.h"
 
 #include <chrono>
-#include <memory>
-#include <nlohmann/json.hpp>
 
 #include "core/map/map_writer.h"
-#include "tools/common/interrupt.h"
-#include "tools/common/progress_line.h"
+#include "tools/common/json_text.h"
 #include "tools/common/text_format.h"
 
-namespace camloc::map_tool {
-namespace {
-
+namespace camloc::mapping {
 using tools::append_text;
 using tools::degrees;
-using tools::InterruptGuard;
-using tools::ProgressLine;
-
-/// A bar for each thing that is done.
-class MergeProgressLine {
- public:
-  bool show(const std::string& what, std::uint64_t done, std::uint64_t total) {
-    if (!line_ || what != what_) line_ = std::make_unique<ProgressLine>(total, what);
-    what_ = what;
-    if (total == 0)
-      line_->say(what + " ...");
-    else
-      line_->show(done);
-    return !InterruptGuard::is_interrupted();
-  }
-
- private:
-  std::string what_;
-  std::unique_ptr<ProgressLine> line_;
-};
-
-}  // namespace
 
 Status merge_into(const std::string& map_a, const MapData& b, const MapMergeOptions& options, const std::string& map_path,
-                  MergeSummary* summary) {
+                  WorkObserver& observer, MergeSummary* summary) {
   const auto start = std::chrono::steady_clock::now();
   const auto a = MapView::open(map_a);
   if (!a.is_ok()) return a.status();
   summary->map_a = map_a;
-  MergeProgressLine line;
-  const auto progress = [&line](const std::string& what, std::uint64_t done, std::uint64_t total) { return line.show(what, done, total); };
-  const auto merged = merge_maps(a.value(), b, options, progress, &summary->report);
+  const auto merged = merge_maps(a.value(), b, options, observer, &summary->report);
   if (!merged.is_ok()) return merged.status();
   if (a.value().is_damaged()) return {ErrorCode::kCorrupt, map_a + ": could not be read to its end; was it changed meanwhile?"};
   if (const Status written = write_map(merged.value(), map_path); !written.is_ok()) return written;
@@ -74,7 +45,7 @@ std::string format_table(const MergeSummary& s) {
   append_text(&text, "%-22s%u, %.2f a landmark\n", "descriptors", m.num_descriptors,
               static_cast<double>(m.num_descriptors) / std::max(1U, m.num_landmarks));
   append_text(&text, "%-22s%u of %u views cover all landmarks\n", "keyframes", m.num_keyframes, m.num_keyframes_before);
-  append_text(&text, "%-22s%llu bytes, %.1f a landmark\n", "size", static_cast<unsigned long long>(m.file_bytes),
+  append_text(&text, "%-22s%llu bytes, %.1f a landmark\n", "size", tools::llu(m.file_bytes),
               static_cast<double>(m.file_bytes) / std::max(1U, m.num_landmarks));
   if (r.is_datum_from_b) append_text(&text, "%-22sthat of the second map, carried over\n", "datum");
   append_text(&text, "%-22s%.1f s\n", "time of merging", s.seconds);
@@ -84,15 +55,14 @@ std::string format_table(const MergeSummary& s) {
 std::string format_json(const MergeSummary& s) {
   const MapMergeReport& r = s.report;
   const Rigid3& T = r.alignment.T_a_b;
-  nlohmann::ordered_json json;
+  tools::Json json;
   json["map"] = s.map_path;
   json["first"] = {{"map", s.map_a}, {"landmarks", r.num_landmarks_a}, {"keyframes", r.num_keyframes_a}};
   json["second"] = {{"map", s.map_b}, {"landmarks", r.num_landmarks_b}, {"keyframes", r.num_keyframes_b}};
   json["localized_keyframes"] = r.num_localized;
   json["queries"] = {
       {"asked", r.registration.num_queries}, {"convincing", r.registration.num_convincing}, {"refused", r.registration.num_disagreeing}};
-  json["T_first_second"] = {{"translation_m", {T.translation.x(), T.translation.y(), T.translation.z()}},
-                            {"rotation_wxyz", {T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()}}};
+  json["T_first_second"] = {{"translation_m", tools::json_of(T.translation)}, {"rotation_wxyz", tools::json_of(T.rotation)}};
   json["disagreement"] = {
       {"median_m", r.alignment.residual_m}, {"median_deg", degrees(r.alignment.residual_rad)}, {"bend_m", r.alignment.bend_m}};
   json["landmarks"] = {{"fused", r.num_fused},
@@ -106,7 +76,7 @@ std::string format_json(const MergeSummary& s) {
   json["bytes"] = r.map.file_bytes;
   json["is_datum_from_second"] = r.is_datum_from_b;
   json["seconds"] = s.seconds;
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return tools::json_text(json);
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

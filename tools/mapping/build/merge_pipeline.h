@@ -9,7 +9,7 @@
 #include "core/base/result.h"
 #include "core/merge/map_merging.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 struct MergeSummary {
   std::string map_a, map_b;  ///< b: a map file or the recording it was made from
@@ -19,13 +19,13 @@ struct MergeSummary {
 };
 
 /// Merges `b` into the map at `map_a` and writes the result to `map_path`, which may be `map_a` itself: it is replaced by a
-/// complete map or stays as it is. The caller holds an InterruptGuard. Errors: those of MapView::open, merge_maps and
-/// write_map, kInvalid naming both maps when they do not fit, kUnavailable after Ctrl-C.
+/// complete map or stays as it is. Errors: those of MapView::open, merge_maps and
+/// write_map, kInvalid naming both maps when they do not fit, kUnavailable when `observer` said so.
 [[nodiscard]] Status merge_into(const std::string& map_a, const MapData& b, const MapMergeOptions& options, const std::string& map_path,
-                                MergeSummary* summary);
+                                WorkObserver& observer, MergeSummary* summary);
 
 /// Rows of a table, and the same as JSON.
 [[nodiscard]] std::string format_table(const MergeSummary& summary);
 [[nodiscard]] std::string format_json(const MergeSummary& summary);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

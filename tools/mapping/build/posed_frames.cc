@@ -10,7 +10,7 @@
 #include "core/io/sequence.h"
 #include "tools/mapping/colmap/colmap_poses.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 Result<std::string> folder_of(const std::string& url) {
@@ -131,4 +131,4 @@ Result<PosedFrames> find_posed_frames(const PosedFramesRequest& request, const R
   return result;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -14,7 +14,7 @@
 #include "core/geometry/rigid3.h"
 #include "tools/mapping/colmap/colmap_scale.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 enum class PoseCamera { kAuto, kColor, kDepth };
 
@@ -48,4 +48,4 @@ struct PosedFrames {
 /// COLMAP model as poses of the depth camera.
 [[nodiscard]] Result<PosedFrames> find_posed_frames(const PosedFramesRequest& request, const RgbdCamera& camera);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/mapping/build/surface_sample.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
-std::vector<Eigen::Vector3f> sample_surface(const RgbdCamera& camera, ImageView<std::uint16_t> depth, int columns, int rows) {
+std::vector<Eigen::Vector3f> sample_surface(const RgbdCamera& camera, ImageView<std::uint16_t> depth) {
+  constexpr int kColumns = 20, kRows = 15;
   std::vector<Eigen::Vector3f> points;
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
-      const int x = (2 * column + 1) * depth.width / (2 * columns), y = (2 * row + 1) * depth.height / (2 * rows);
+  for (int row = 0; row < kRows; ++row) {
+    for (int column = 0; column < kColumns; ++column) {
+      const int x = (2 * column + 1) * depth.width / (2 * kColumns), y = (2 * row + 1) * depth.height / (2 * kRows);
       const double z = camera.depth_m(depth.at(x, y));
       if (z <= 0) continue;
       const Eigen::Vector2d ray = camera.depth.undistort({x, y});
@@ -18,4 +19,4 @@ std::vector<Eigen::Vector3f> sample_surface(const RgbdCamera& camera, ImageView<
   return points;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

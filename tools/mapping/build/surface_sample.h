@@ -11,10 +11,9 @@
 #include "core/base/frame.h"
 #include "core/geometry/camera.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
-/// Points in the colour camera's frame, metres, on a grid of `columns` x `rows` over the depth image, where there is depth.
-[[nodiscard]] std::vector<Eigen::Vector3f> sample_surface(const RgbdCamera& camera, ImageView<std::uint16_t> depth, int columns = 20,
-                                                          int rows = 15);
+/// Points in the colour camera's frame, metres, on a grid of 20 x 15 over the depth image, where there is depth.
+[[nodiscard]] std::vector<Eigen::Vector3f> sample_surface(const RgbdCamera& camera, ImageView<std::uint16_t> depth);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Every record is checked before it is believed: sizes against what is left of the file, then the hash over header and arrays.
 #include "tools/mapping/build/view_log.h"
 
 #define XXH_INLINE_ALL
@@ -11,7 +13,7 @@
 #include <filesystem>
 #include <system_error>
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::array<char, 8> kMagic = {'C', 'M', 'V', 'I', 'E', 'W', 'S', '\n'};
@@ -192,4 +194,4 @@ Status ViewLogReader::next(LoggedView* logged) {
   return Status::ok();
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -18,7 +18,7 @@
 #include "core/dense/thumbnail.h"
 #include "core/registration/view_features.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 struct LoggedView {
   std::uint64_t frame = 0;                 ///< index in the recording
@@ -64,4 +64,4 @@ class ViewLogReader {
   std::vector<char> bytes_;
 };
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

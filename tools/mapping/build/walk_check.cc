@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// A recording is judged twice: early, by its depth images alone, so that nobody waits an hour for a refusal; and at the end, by how
+// far the camera moved. In between every frame leaves a note, and stretches of weak notes become spots with advice.
 #include "tools/mapping/build/walk_check.h"
 
 #include <algorithm>
@@ -7,7 +10,7 @@
 
 #include "tools/common/text_format.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::uint64_t kEarlyFrames = 30;  // enough to tell a broken sensor from a lens cap at the start
@@ -122,4 +125,4 @@ std::vector<WeakSpot> WalkCheck::weak_spots() const {
   return spots;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -14,7 +14,7 @@
 #include "core/geometry/camera.h"
 #include "core/slam/slam.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 /// A stretch of the recording where the map will be thin or missing.
 struct WeakSpot {
@@ -57,4 +57,4 @@ class WalkCheck {
   std::uint16_t constant_value_ = 0;
 };
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

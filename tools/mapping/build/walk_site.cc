@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// A walk floats until something holds it. Control points are resolved to points of the map, fitted, and given to the bundle
+// adjustment as surveyed landmarks; a second fit, on the adjusted map and with the strict tolerance, gives the datum.
 #include "tools/mapping/build/walk_site.h"
 
 #include <algorithm>
@@ -11,7 +14,7 @@
 #include "drivers/frame_source.h"
 #include "tools/common/frame_reading.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr double kToleranceM = 0.10, kBendPerM = 0.01;
@@ -168,4 +171,4 @@ std::optional<WcsDatum> adjust_to_survey(const SurveyRequest& request, const Sur
   return summary->fit.datum;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -16,7 +16,7 @@
 #include "tools/mapping/site/control_points.h"
 #include "tools/mapping/site/georef_report.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 /// Up in the frame of the largest segment: from accelerometer readings where the file is named or lies in the recording's
 /// folder (accelerometer.txt), else from the floor. kNotFound where neither says. An accelerometer file that cannot be read is
@@ -49,4 +49,4 @@ struct Survey {
 [[nodiscard]] std::optional<WcsDatum> adjust_to_survey(const SurveyRequest& request, const Survey& survey, const RgbdCamera& camera,
                                                        Slam* slam, SlamResult* result, GeorefSummary* summary);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

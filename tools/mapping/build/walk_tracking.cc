@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// The first pass, frame by frame: features and thumbnail, SLAM, log. A resumed pass replays its log through the same SLAM first,
+// so that its state is that of a pass which was never interrupted.
 #include "tools/mapping/build/walk_tracking.h"
 
 #define XXH_INLINE_ALL
@@ -9,16 +12,11 @@
 #include <filesystem>
 
 #include "core/io/camera_file.h"
-#include "tools/common/interrupt.h"
-#include "tools/common/progress_line.h"
 #include "tools/mapping/build/surface_sample.h"
 #include "tools/mapping/build/view_log.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
-
-using tools::InterruptGuard;
-using tools::ProgressLine;
 
 std::string note_of(const SlamCounts& counts) {
   std::string note = std::to_string(counts.num_keyframes) + " keyframes, " + std::to_string(counts.num_landmarks) + " landmarks";
@@ -31,27 +29,27 @@ std::string note_of(const SlamCounts& counts) {
 /// One walk on its way through extraction, tracking and the log.
 class Pass {
  public:
-  Pass(const WalkRequest& request, Slam* slam, WalkCheck* check)
+  Pass(const WalkRequest& request, Slam* slam, WalkCheck* check, WorkObserver& observer)
       : request_(request),
         slam_(slam),
         check_(check),
+        observer_(observer),
         extractor_(request.camera, request.orb),
-        thumbnails_(request.camera),
-        progress_(request.num_frames) {}
+        thumbnails_(request.camera) {}
 
   /// Processes what an earlier pass has seen; says where its log ends.
   Status replay(std::uint64_t* log_bytes) {
     auto reader = ViewLogReader::open(request_.log_path, walk_identity(request_));
     if (!reader.is_ok()) return reader.status();
     LoggedView logged;
-    while (!InterruptGuard::is_interrupted() && reader->next(&logged).is_ok()) {
+    while (!observer_.should_stop() && reader->next(&logged).is_ok()) {
       check_->see_view(logged.frame, logged.view.stamp_ns, logged.view.size(), num_with_depth(logged.view));
       track(logged);
       last_frame_ = logged.frame;
       ++end_.num_resumed;
     }
     *log_bytes = reader->size_bytes();
-    end_.is_interrupted = InterruptGuard::is_interrupted();
+    end_.is_interrupted = observer_.should_stop();
     return Status::ok();
   }
 
@@ -64,10 +62,10 @@ class Pass {
           const bool is_known = end_.num_resumed > 0 && frame.sequence <= last_frame_;
           return is_known ? Status::ok() : process(frame.view(), &log);
         },
-        InterruptGuard::is_interrupted);
+        observer_);
     if (!counts.is_ok()) return counts.status();
     end_.reading = std::move(counts).value();
-    end_.is_interrupted = InterruptGuard::is_interrupted();
+    end_.is_interrupted = observer_.should_stop();
     return log.flush();
   }
 
@@ -99,16 +97,16 @@ class Pass {
     const ViewReport report = slam_->add_view(logged.frame, logged.view, logged.thumbnail);
     check_->see_report(report);
     if (report.is_keyframe) end_.surfaces.push_back({logged.frame, logged.surface_m});
-    progress_.show(++num_done_, note_of(slam_->counts()));
+    observer_.show("frame", ++num_done_, request_.num_frames, note_of(slam_->counts()));
     return report.is_keyframe;
   }
 
   const WalkRequest& request_;
   Slam* slam_;
   WalkCheck* check_;
+  WorkObserver& observer_;
   ViewExtractor extractor_;
   ThumbnailMaker thumbnails_;
-  ProgressLine progress_;
   WalkEnd end_;
   std::uint64_t num_done_ = 0, last_frame_ = 0;
 };
@@ -120,8 +118,8 @@ std::uint64_t walk_identity(const WalkRequest& request) {
   return XXH3_64bits(text.data(), text.size());
 }
 
-Result<WalkEnd> track_walk(const WalkRequest& request, Slam* slam, WalkCheck* check) {
-  Pass pass(request, slam, check);
+Result<WalkEnd> track_walk(const WalkRequest& request, Slam* slam, WalkCheck* check, WorkObserver& observer) {
+  Pass pass(request, slam, check, observer);
   std::uint64_t log_bytes = 0;
   if (request.is_resumed) {
     if (const Status replayed = pass.replay(&log_bytes); !replayed.is_ok()) return replayed;
@@ -138,4 +136,4 @@ Result<WalkEnd> track_walk(const WalkRequest& request, Slam* slam, WalkCheck* ch
   return pass.end();
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

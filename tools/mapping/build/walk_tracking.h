@@ -16,7 +16,7 @@
 #include "tools/common/frame_reading.h"
 #include "tools/mapping/build/walk_check.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 struct WalkRequest {
   std::string url;               ///< for open_frame_source
@@ -37,7 +37,7 @@ struct KeyframeSurface {
 /// How the pass ended.
 struct WalkEnd {
   std::vector<KeyframeSurface> surfaces;
-  bool is_interrupted = false;          ///< Ctrl-C: what is there is a map of the first part
+  bool is_interrupted = false;          ///< what is there is a map of the first part
   std::uint64_t num_resumed = 0;        ///< views that came from the log
   tools::FrameCounts reading;           ///< of this pass, without what came from the log
   std::uint64_t num_without_depth = 0;  ///< colour images without a depth image
@@ -48,6 +48,6 @@ struct WalkEnd {
 
 /// Feeds all frames to `slam`; `check` gathers what is wrong with them. Errors: those of the source and of the log, a frame of
 /// the wrong size.
-[[nodiscard]] Result<WalkEnd> track_walk(const WalkRequest& request, Slam* slam, WalkCheck* check);
+[[nodiscard]] Result<WalkEnd> track_walk(const WalkRequest& request, Slam* slam, WalkCheck* check, WorkObserver& observer);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr int kBorder = 1;  // cells beside the outermost ones
@@ -97,4 +97,4 @@ std::vector<CellGrid::Place> CellGrid::best_places(const std::vector<Eigen::Vect
   return places;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

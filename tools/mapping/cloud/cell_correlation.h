@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 class CellGrid {
  public:
@@ -36,4 +36,4 @@ class CellGrid {
   std::vector<std::uint8_t> cells_;  ///< 2 occupied, 1 beside one, x fastest
 };
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

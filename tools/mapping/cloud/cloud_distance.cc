@@ -6,10 +6,15 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/order_statistics.h"
 #include "tools/mapping/cloud/point_cloud.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
+
+constexpr double kCellM = 0.25;     // edge of the cells in which coverage is counted
+constexpr double kCoveredM = 0.25;  // a cell is covered when a landmark is this close to it
+constexpr double kViewRangeM = 5;   // only what is this close to a keyframe can be expected in the map
 
 struct Box {
   Eigen::Vector3d low, high;
@@ -25,11 +30,9 @@ Box box_of(const Points& points) {
   std::vector<float> values(points.size());
   for (int axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < points.size(); ++i) values[i] = static_cast<float>(points[i][axis]);
-    const std::size_t low = values.size() / 100, high = values.size() - 1 - low;
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(low), values.end());
-    box.low[axis] = static_cast<double>(values[low]);
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(high), values.end());
-    box.high[axis] = static_cast<double>(values[high]);
+    const auto [low, high] = trimmed_range(values, 100);
+    box.low[axis] = static_cast<double>(low);
+    box.high[axis] = static_cast<double>(high);
   }
   return box;
 }
@@ -41,14 +44,13 @@ std::vector<Eigen::Vector3f> to_float(std::span<const Eigen::Vector3d> points) {
   return result;
 }
 
-void measure_landmarks(std::span<const Eigen::Vector3d> landmarks_m, CloudIndex* cloud, const DistanceOptions& options,
-                       CloudDistances* result) {
+void measure_landmarks(std::span<const Eigen::Vector3d> landmarks_m, CloudIndex* cloud, double max_distance_m, CloudDistances* result) {
   std::vector<float> near_m, plane_m;
   for (const Eigen::Vector3d& p : landmarks_m) {
     const auto neighbor = cloud->nearest(p, std::numeric_limits<double>::max());
     if (!neighbor) continue;  // an empty cloud
     result->point_m.push_back(static_cast<float>(neighbor->distance_m));
-    if (neighbor->distance_m > options.max_distance_m) {
+    if (neighbor->distance_m > max_distance_m) {
       ++result->num_outside;
       continue;
     }
@@ -64,8 +66,8 @@ void measure_landmarks(std::span<const Eigen::Vector3d> landmarks_m, CloudIndex*
 }
 
 void measure_coverage(std::span<const Eigen::Vector3d> landmarks_m, std::span<const Eigen::Vector3d> keyframes_m, const CloudIndex& cloud,
-                      const Box& map_box, const DistanceOptions& options, CloudDistances* result) {
-  CloudAccumulator accumulator({options.cell_m, 1, 1});
+                      const Box& map_box, CloudDistances* result) {
+  CloudAccumulator accumulator({kCellM, 1, 1});
   for (const Eigen::Vector3f& p : cloud.points_m()) accumulator.add(p.cast<double>());
   const PointCloud cells = accumulator.finish();
   const std::vector<Eigen::Vector3f> landmarks = to_float(landmarks_m), keyframes = to_float(keyframes_m);
@@ -73,15 +75,15 @@ void measure_coverage(std::span<const Eigen::Vector3d> landmarks_m, std::span<co
   std::vector<float> distances_m;
   for (const Eigen::Vector3f& cell : cells.points_m) {
     const Eigen::Vector3d p = cells.origin_m + cell.cast<double>();
-    if (!map_box.contains(p, options.covered_m)) continue;
-    if (!keyframes.empty() && !keyframe_index.nearest(p, options.view_range_m)) continue;
+    if (!map_box.contains(p, kCoveredM)) continue;
+    if (!keyframes.empty() && !keyframe_index.nearest(p, kViewRangeM)) continue;
     const auto neighbor = landmark_index.nearest(p, std::numeric_limits<double>::max());
     if (neighbor) distances_m.push_back(static_cast<float>(neighbor->distance_m));
   }
   result->cells = statistics_of(distances_m);
   result->num_cells = distances_m.size();
   result->num_covered = static_cast<std::uint64_t>(
-      std::count_if(distances_m.begin(), distances_m.end(), [&](float d) { return static_cast<double>(d) <= options.covered_m; }));
+      std::count_if(distances_m.begin(), distances_m.end(), [&](float d) { return static_cast<double>(d) <= kCoveredM; }));
 }
 
 }  // namespace
@@ -118,14 +120,14 @@ double CloudDistances::volume_ratio() const {
 }
 
 CloudDistances measure_distances(std::span<const Eigen::Vector3d> landmarks_m, std::span<const Eigen::Vector3d> keyframes_m,
-                                 CloudIndex* cloud, const DistanceOptions& options) {
+                                 CloudIndex* cloud, double max_distance_m) {
   CloudDistances result;
-  measure_landmarks(landmarks_m, cloud, options, &result);
+  measure_landmarks(landmarks_m, cloud, max_distance_m, &result);
   const Box map_box = box_of(landmarks_m), cloud_box = box_of(cloud->points_m());
   result.map_extent_m = map_box.high - map_box.low;
   result.cloud_extent_m = cloud_box.high - cloud_box.low;
-  measure_coverage(landmarks_m, keyframes_m, *cloud, map_box, options, &result);
+  measure_coverage(landmarks_m, keyframes_m, *cloud, map_box, &result);
   return result;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -12,7 +12,7 @@
 
 #include "tools/mapping/cloud/cloud_index.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 struct DistanceStatistics {
   std::uint64_t count = 0;
@@ -21,13 +21,6 @@ struct DistanceStatistics {
 };
 /// Of values that are not negative; the percentiles are values that occur.
 [[nodiscard]] DistanceStatistics statistics_of(std::span<const float> values_m);
-
-struct DistanceOptions {
-  double max_distance_m = 0.5;  ///< landmarks farther from the cloud are outside of what was scanned
-  double cell_m = 0.25;         ///< edge of the cells in which coverage is counted
-  double covered_m = 0.25;      ///< a cell is covered when a landmark is this close to it
-  double view_range_m = 5;      ///< only what is this close to a keyframe can be expected in the map
-};
 
 struct CloudDistances {
   std::vector<float> point_m;                                ///< per landmark: to the nearest point of the cloud, however far
@@ -43,8 +36,8 @@ struct CloudDistances {
   [[nodiscard]] double volume_ratio() const;
 };
 
-/// All points in the frame of the cloud.
+/// All points in the frame of the cloud; a landmark farther from it than `max_distance_m` is outside of what was scanned.
 [[nodiscard]] CloudDistances measure_distances(std::span<const Eigen::Vector3d> landmarks_m, std::span<const Eigen::Vector3d> keyframes_m,
-                                               CloudIndex* cloud, const DistanceOptions& options);
+                                               CloudIndex* cloud, double max_distance_m);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

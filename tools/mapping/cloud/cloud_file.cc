@@ -13,7 +13,7 @@
 
 #include "tools/mapping/cloud/cloud_formats.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 struct Reader {
@@ -96,8 +96,8 @@ double read_scalar(ScalarType type, const std::byte* bytes, bool is_big_endian) 
   return 0;
 }
 
-Result<PointCloud> read_cloud(std::istream& stream, const std::string& name, const CloudOptions& options, const CloudProgress& progress) {
-  CloudInput input(stream, name, progress);
+Result<PointCloud> read_cloud(std::istream& stream, const std::string& name, const CloudOptions& options, WorkObserver& observer) {
+  CloudInput input(stream, name, observer);
   const auto reader = choose_reader(&input);
   if (!reader.is_ok()) return reader.status();
   CloudAccumulator accumulator(options);
@@ -112,14 +112,14 @@ Result<PointCloud> read_cloud(std::istream& stream, const std::string& name, con
   return cloud;
 }
 
-Result<PointCloud> read_cloud(const std::string& path, const CloudOptions& options, const CloudProgress& progress) {
+Result<PointCloud> read_cloud(const std::string& path, const CloudOptions& options, WorkObserver& observer) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return {ErrorCode::kNotFound, path + ": no such file"};
   if (std::filesystem::is_directory(path, error)) return {ErrorCode::kInvalid, path + ": is a folder; give a point cloud file"};
   if (!std::filesystem::is_regular_file(path, error)) return {ErrorCode::kInvalid, path + ": is no regular file"};
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return {ErrorCode::kIo, path + ": cannot be read; check its permissions"};
-  return read_cloud(stream, path, options, progress);
+  return read_cloud(stream, path, options, observer);
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

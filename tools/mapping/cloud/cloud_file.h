@@ -12,15 +12,16 @@
 #include "tools/mapping/cloud/cloud_input.h"
 #include "tools/mapping/cloud/point_cloud.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
-/// Errors, all naming the file: kNotFound, kIo (unreadable, or stopped by `progress`), kUnsupported (LAZ, E57, an unknown kind, a
+/// Errors, all naming the file: kNotFound, kIo (unreadable, or stopped by `observer`), kUnsupported (LAZ, E57, an unknown kind, a
 /// variant that is not read; says how to convert), kCorrupt (truncated, counts larger than the file, a line that is no
 /// point), kInvalid (no points, none of them finite).
-[[nodiscard]] Result<PointCloud> read_cloud(const std::string& path, const CloudOptions& options, const CloudProgress& progress = {});
+[[nodiscard]] Result<PointCloud> read_cloud(const std::string& path, const CloudOptions& options,
+                                            WorkObserver& observer = WorkObserver::nobody());
 
 /// The same from a stream; `name` also gives the extension.
 [[nodiscard]] Result<PointCloud> read_cloud(std::istream& stream, const std::string& name, const CloudOptions& options,
-                                            const CloudProgress& progress = {});
+                                            WorkObserver& observer = WorkObserver::nobody());
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

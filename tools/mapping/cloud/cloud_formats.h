@@ -13,7 +13,7 @@
 #include "tools/mapping/cloud/cloud_input.h"
 #include "tools/mapping/cloud/point_cloud.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 /// PLY 1.0, ascii, binary little and big endian: x, y, z of the element "vertex"; other properties and elements are skipped.
 [[nodiscard]] Status read_ply(CloudInput* input, CloudAccumulator* cloud);
@@ -31,4 +31,4 @@ enum class ScalarType : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, k
 /// `bytes` holds scalar_bytes(type) bytes.
 [[nodiscard]] double read_scalar(ScalarType type, const std::byte* bytes, bool is_big_endian);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

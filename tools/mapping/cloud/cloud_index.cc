@@ -10,7 +10,7 @@
 #include <nanoflann.hpp>
 #include <unordered_map>
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr float kPlaneRadiusM = 0.08F;
@@ -106,4 +106,4 @@ const CloudIndex::Plane& CloudIndex::plane_at(std::uint32_t index) {
   return impl_->planes.emplace(index, fit_plane(impl_->adaptor.points, neighbors, index)).first->second;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 /// A k-d tree over points that somebody else keeps alive. Planes are fitted when they are first asked for and kept: not
 /// thread-safe.
@@ -44,4 +44,4 @@ class CloudIndex {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

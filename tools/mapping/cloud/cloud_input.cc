@@ -6,15 +6,15 @@
 #include <cassert>
 #include <cstring>
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20;
 
 }  // namespace
 
-CloudInput::CloudInput(std::istream& stream, std::string name, CloudProgress progress)
-    : stream_(stream), name_(std::move(name)), progress_(std::move(progress)), buffer_(kBufferBytes) {
+CloudInput::CloudInput(std::istream& stream, std::string name, WorkObserver& observer)
+    : stream_(stream), name_(std::move(name)), observer_(observer), buffer_(kBufferBytes) {
   stream_.seekg(0, std::ios::end);
   const auto end = stream_.tellg();
   total_ = end < 0 ? 0 : static_cast<std::uint64_t>(end);
@@ -31,7 +31,8 @@ void CloudInput::fill(std::size_t size) {
   next_ = 0;
   stream_.read(reinterpret_cast<char*>(buffer_.data() + end_), static_cast<std::streamsize>(kBufferBytes - end_));
   end_ += static_cast<std::size_t>(std::max<std::streamsize>(0, stream_.gcount()));
-  if (progress_ && !progress_(position(), total_)) {
+  const auto megabytes = [](std::uint64_t bytes) { return std::to_string((bytes + 500'000) / 1'000'000); };
+  if (!observer_.on_progress("reading the cloud: " + megabytes(position()) + " of " + megabytes(total_) + " MB")) {
     is_stopped_ = true;
     next_ = end_ = 0;
   }
@@ -80,4 +81,4 @@ Status CloudInput::truncated(const std::string& what) const {
   return {ErrorCode::kCorrupt, name_ + ": is truncated: " + what};
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

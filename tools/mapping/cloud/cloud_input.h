@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <istream>
 #include <optional>
 #include <span>
@@ -16,16 +15,14 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/base/work_observer.h"
 
-namespace camloc::map_tool {
-
-/// Called about once a megabyte; false stops the reading.
-using CloudProgress = std::function<bool(std::uint64_t done_bytes, std::uint64_t total_bytes)>;
+namespace camloc::mapping {
 
 class CloudInput {
  public:
-  /// `stream` stands at its first byte and outlives this; `name` is for messages.
-  CloudInput(std::istream& stream, std::string name, CloudProgress progress = {});
+  /// `stream` stands at its first byte; it and `observer`, who is told of every megabyte, outlive this. `name` is for messages.
+  CloudInput(std::istream& stream, std::string name, WorkObserver& observer = WorkObserver::nobody());
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::uint64_t total() const { return total_; }
@@ -40,7 +37,7 @@ class CloudInput {
   /// The next line without its end ("\n", "\r\n" or "\r" alone), valid until the next call; nothing at the end of the file. A
   /// line longer than kMaxLine is cut there, its rest is the next line.
   [[nodiscard]] std::optional<std::string_view> read_line();
-  /// True when progress said stop.
+  /// True when the observer said stop.
   [[nodiscard]] bool is_stopped() const { return is_stopped_; }
   /// kCorrupt "name: is truncated: what", or kIo when reading was stopped.
   [[nodiscard]] Status truncated(const std::string& what) const;
@@ -56,11 +53,11 @@ class CloudInput {
 
   std::istream& stream_;
   std::string name_;
-  CloudProgress progress_;
+  WorkObserver& observer_;
   std::uint64_t total_ = 0, consumed_ = 0;  ///< consumed_: bytes of the file before the buffer
   std::vector<std::byte> buffer_;
   std::size_t next_ = 0, end_ = 0;
   bool is_stopped_ = false;
 };
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -8,7 +8,7 @@
 #include "core/base/checked.h"
 #include "tools/mapping/cloud/cloud_formats.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::size_t kMinHeaderBytes = 227, kHeaderBytes14 = 375;
@@ -102,4 +102,4 @@ Status read_las(CloudInput* input, CloudAccumulator* cloud) {
   return Status::ok();
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -12,7 +12,7 @@
 #include "core/io/text.h"
 #include "tools/mapping/cloud/cloud_formats.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr int kMaxHeaderLines = 100;
@@ -236,4 +236,4 @@ Status read_pcd(CloudInput* input, CloudAccumulator* cloud) {
   return Status::ok();
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -12,7 +12,7 @@
 #include "core/io/text.h"
 #include "tools/mapping/cloud/cloud_formats.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr int kMaxHeaderLines = 1000;
@@ -243,4 +243,4 @@ Status read_ply(CloudInput* input, CloudAccumulator* cloud) {
   return input->error(ErrorCode::kCorrupt, "has no element 'vertex'");
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Each iteration pairs the points with the planes of the cloud, keeps the closest, and solves one weighted Gauss-Newton step for the
+// motion (and the scale, where asked). The last iterations see all correspondences, so that trimming biases nothing.
 #include "tools/mapping/cloud/cloud_registration.h"
 
 #include <Eigen/Cholesky>
@@ -9,7 +12,7 @@
 
 #include "core/base/order_statistics.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using Matrix7d = Eigen::Matrix<double, 7, 7>;
@@ -166,4 +169,4 @@ double capped_mean_distance(std::span<const Eigen::Vector3d> points_map, const C
   return points_map.empty() ? 0 : sum / static_cast<double>(points_map.size());
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -14,7 +14,7 @@
 #include "core/geometry/rigid3.h"
 #include "tools/mapping/cloud/cloud_index.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 /// p_a = scale * rigid.rotation * p_b + rigid.translation.
 struct Similarity3 {
@@ -69,4 +69,4 @@ struct CoarseStart {
 [[nodiscard]] double capped_mean_distance(std::span<const Eigen::Vector3d> points_map, const CloudIndex& cloud, const Rigid3& T_cloud_map,
                                           double max_distance_m);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -11,7 +11,7 @@
 #include "core/io/text.h"
 #include "tools/mapping/cloud/cloud_formats.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 std::string lower(std::string_view text) {
@@ -116,4 +116,4 @@ Status read_text_cloud(CloudInput* input, CloudAccumulator* cloud) {
   return Status::ok();
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

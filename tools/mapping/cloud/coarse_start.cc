@@ -14,7 +14,7 @@
 #include "tools/mapping/cloud/point_cloud.h"
 #include "tools/mapping/cloud/wall_directions.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr double kCellM = 0.25;  // surfaces count by area, not by how often they were scanned
@@ -160,4 +160,4 @@ Result<std::vector<CoarseStart>> find_coarse_starts(std::span<const Eigen::Vecto
   return starts;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

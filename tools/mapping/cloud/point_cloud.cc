@@ -8,7 +8,7 @@
 
 #include "core/base/order_statistics.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::size_t kPointsForOrigin = 4096;  // their median: an invalid return at (0, 0, 0) may come first
@@ -26,12 +26,9 @@ std::array<Eigen::Vector3d, 2> PointCloud::bounds_m() const {
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<float> values;
     for (std::size_t i = 0; i < points_m.size(); i += step) values.push_back(points_m[i][axis]);
-    const std::size_t low = values.size() / 200;
-    for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
-      const std::size_t rank = side == 0 ? low : values.size() - 1 - low;
-      std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rank), values.end());
-      bounds[side][axis] = static_cast<double>(values[rank]);
-    }
+    const auto [low, high] = trimmed_range(std::move(values), 200);
+    bounds[0][axis] = static_cast<double>(low);
+    bounds[1][axis] = static_cast<double>(high);
   }
   return bounds;
 }
@@ -114,4 +111,4 @@ PointCloud CloudAccumulator::finish() {
   return cloud;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

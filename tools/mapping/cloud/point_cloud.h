@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 /// Points relative to an origin: survey coordinates have seven digits before the point, a float holds seven in all.
 struct PointCloud {
@@ -59,4 +59,4 @@ class CloudAccumulator {
   std::size_t compact_at_ = 0;
 };
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -8,7 +8,7 @@
 
 #include "tools/mapping/cloud/cloud_index.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::size_t kMaxNormals = 3000, kMaxGuesses = 300;
@@ -70,4 +70,4 @@ Eigen::Matrix3d wall_directions(const std::vector<Eigen::Vector3d>& points_m) {
   return axes;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -17,7 +17,7 @@
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 /// COLMAP pixel = ours + this, in both directions of the image.
 inline constexpr double kColmapPixelShift = 0.5;
@@ -67,4 +67,4 @@ struct ColmapModel {
 /// holds a binary model, which COLMAP would read in place of this one; kIo where the system refuses.
 [[nodiscard]] Status write_colmap_model(const ColmapModel& model, const std::string& folder, const std::string& comment);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -10,7 +10,7 @@
 #include "core/io/image_file.h"
 #include "core/io/text.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::size_t kMaxScaleImages = 60;
@@ -116,4 +116,4 @@ Result<ColmapPoses> read_colmap_poses(const std::string& folder, const Sequence&
   return poses;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

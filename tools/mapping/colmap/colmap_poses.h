@@ -15,7 +15,7 @@
 #include "tools/mapping/colmap/colmap_model.h"
 #include "tools/mapping/colmap/colmap_scale.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 struct ColmapPoses {
   std::vector<std::optional<Rigid3>> T_map_camera;  ///< of the colour camera, per frame of the recording; metres
@@ -31,4 +31,4 @@ struct ColmapPoses {
 /// estimate_model_scale, and another image size than the camera's.
 [[nodiscard]] Result<ColmapPoses> read_colmap_poses(const std::string& folder, const Sequence& sequence, const RgbdCamera& camera);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

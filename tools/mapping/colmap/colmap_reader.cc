@@ -15,7 +15,7 @@
 #include "core/io/text.h"
 #include "tools/mapping/colmap/colmap_model.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::size_t kMaxFileBytes = std::size_t{2} << 30;  // a thousand images with ten thousand keypoints are 0.25 GB
@@ -220,4 +220,4 @@ Result<ColmapModel> read_colmap_model(const std::string& folder) {
   return model;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

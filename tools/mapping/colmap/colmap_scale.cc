@@ -4,11 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
-namespace camloc::map_tool {
+#include "tools/common/text_format.h"
+
+namespace camloc::mapping {
 namespace {
+
+constexpr std::size_t kMinPairs = 50, kMinImages = 2;
+constexpr std::size_t kMinPairsPerImage = 5;  // an image's median needs that many
+constexpr double kMaxSpread = 0.15;           // points of a structure-from-motion model scatter 1-5 % at room distances
+constexpr double kMaxImageSpread = 0.05;
 
 /// Of a list that is not empty; of an even number the mean of the middle two.
 double median(std::vector<double> values) {
@@ -25,22 +31,17 @@ double robust_deviation(const std::vector<double>& values, double center) {
   return 1.4826 * median(std::move(deviations));
 }
 
-std::string percent(double fraction) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f %%", 100 * fraction);
-  return text;
-}
+std::string percent(double fraction) { return tools::text_of("%.1f %%", 100 * fraction); }
 
 }  // namespace
 
 std::string describe_scale(const ModelScale& scale) {
-  char metres[32];
-  std::snprintf(metres, sizeof metres, "%.4g", scale.metres_per_unit);
-  return std::string(metres) + " m a unit, from " + std::to_string(scale.num_pairs) + " points in " + std::to_string(scale.num_images) +
-         " images; scatter " + percent(scale.spread) + ", drift between images " + percent(scale.image_spread);
+  return tools::text_of("%.4g", scale.metres_per_unit) + " m a unit, from " + std::to_string(scale.num_pairs) + " points in " +
+         std::to_string(scale.num_images) + " images; scatter " + percent(scale.spread) + ", drift between images " +
+         percent(scale.image_spread);
 }
 
-Result<ModelScale> estimate_model_scale(std::span<const DepthPair> pairs, const ModelScaleOptions& options) {
+Result<ModelScale> estimate_model_scale(std::span<const DepthPair> pairs) {
   std::vector<double> logs;
   std::map<std::uint32_t, std::vector<double>> logs_of_image;
   for (const DepthPair& pair : pairs) {
@@ -51,14 +52,13 @@ Result<ModelScale> estimate_model_scale(std::span<const DepthPair> pairs, const 
   }
   std::vector<double> image_medians;
   for (auto& [image, values] : logs_of_image) {
-    if (values.size() >= options.min_pairs_per_image) image_medians.push_back(median(std::move(values)));
+    if (values.size() >= kMinPairsPerImage) image_medians.push_back(median(std::move(values)));
   }
   const std::string found =
       std::to_string(logs.size()) + " points with measured depth in " + std::to_string(image_medians.size()) + " images";
-  if (logs.size() < std::max<std::uint64_t>(options.min_pairs, 1) ||
-      image_medians.size() < std::max<std::uint64_t>(options.min_images, 1)) {
-    return {ErrorCode::kInvalid, "the scale of the model cannot be told from " + found + "; at least " + std::to_string(options.min_pairs) +
-                                     " in " + std::to_string(options.min_images) + " are needed"};
+  if (logs.size() < kMinPairs || image_medians.size() < kMinImages) {
+    return {ErrorCode::kInvalid, "the scale of the model cannot be told from " + found + "; at least " + std::to_string(kMinPairs) +
+                                     " in " + std::to_string(kMinImages) + " are needed"};
   }
   ModelScale scale;
   const double center = median(logs);
@@ -67,17 +67,17 @@ Result<ModelScale> estimate_model_scale(std::span<const DepthPair> pairs, const 
   scale.image_spread = robust_deviation(image_medians, median(image_medians));
   scale.num_pairs = logs.size();
   scale.num_images = image_medians.size();
-  if (scale.spread > options.max_spread) {
+  if (scale.spread > kMaxSpread) {
     return {ErrorCode::kInvalid, "the scale of the model cannot be told: measured / model depth scatters by " + percent(scale.spread) +
-                                     " (at most " + percent(options.max_spread) + ") over " + found +
+                                     " (at most " + percent(kMaxSpread) + ") over " + found +
                                      "; does it belong to this recording and camera?"};
   }
-  if (scale.image_spread > options.max_image_spread) {
+  if (scale.image_spread > kMaxImageSpread) {
     return {ErrorCode::kInvalid, "the scale of the model drifts by " + percent(scale.image_spread) + " (at most " +
-                                     percent(options.max_image_spread) + ") between images, over " + found +
+                                     percent(kMaxImageSpread) + ") between images, over " + found +
                                      "; check the model for parts that do not fit together"};
   }
   return scale;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -12,7 +12,7 @@
 
 #include "core/base/result.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 /// A point of the model as one image sees it.
 struct DepthPair {
@@ -28,20 +28,12 @@ struct ModelScale {
   std::uint64_t num_pairs = 0, num_images = 0;
 };
 
-struct ModelScaleOptions {
-  std::uint64_t min_pairs = 50;
-  std::uint64_t min_images = 2;
-  std::uint64_t min_pairs_per_image = 5;  ///< an image's median needs that many
-  double max_spread = 0.15;               ///< points of a structure-from-motion model scatter 1-5 % at room distances
-  double max_image_spread = 0.05;
-};
-
 /// "0.271 m a unit, from 80170 points in 60 images; scatter 1.2 %, drift between images 0.4 %": for a summary.
 [[nodiscard]] std::string describe_scale(const ModelScale& scale);
 
 /// Median of measured / model depth. The spreads are 1.4826 times the median absolute deviation of the logarithm of the ratio.
 /// kInvalid, naming the numbers: too few pairs, or spreads above the limits, as with poses, images or a depth that do not
 /// belong together.
-[[nodiscard]] Result<ModelScale> estimate_model_scale(std::span<const DepthPair> pairs, const ModelScaleOptions& options = {});
+[[nodiscard]] Result<ModelScale> estimate_model_scale(std::span<const DepthPair> pairs);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -4,13 +4,12 @@
 // The writing half of colmap_model.h.
 #include <charconv>
 #include <filesystem>
-#include <span>
 #include <system_error>
 
 #include "core/io/replace_file.h"
 #include "tools/mapping/colmap/colmap_model.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 /// " VALUE", the shortest text that reads back to the same bits, whatever the locale.
@@ -104,9 +103,9 @@ Status write_colmap_model(const ColmapModel& model, const std::string& folder, c
                                                        {"images.txt", format_images(model, comment)},
                                                        {"points3D.txt", format_points(model, comment)}};
   for (const auto& [name, text] : files) {
-    if (const Status written = replace_file((path / name).string(), std::as_bytes(std::span(text))); !written.is_ok()) return written;
+    if (const Status written = replace_file((path / name).string(), text); !written.is_ok()) return written;
   }
   return Status::ok();
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

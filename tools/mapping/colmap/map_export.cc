@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdio>
+#include <tuple>
 
+#include "core/base/order_statistics.h"
 #include "core/io/sequence.h"
+#include "tools/common/map_points.h"
+#include "tools/common/text_format.h"
 #include "tools/mapping/picture/point_raster.h"
 #include "tools/mapping/site/map_up.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 Rigid3 T_out_map(const MapView& map, const ExportOptions& options) {
@@ -26,12 +29,7 @@ std::vector<Rgb> landmark_colors(const MapView& map, const std::vector<Eigen::Ve
   if (coloring == PointColoring::kHeight) {
     const Eigen::Vector3d up = up_axis(map);
     for (const Eigen::Vector3d& p : positions) values.push_back(up.dot(p));
-    std::vector<double> sorted = values;
-    std::sort(sorted.begin(), sorted.end());
-    if (!sorted.empty()) {
-      low = sorted[sorted.size() / 50];
-      high = sorted[sorted.size() - 1 - sorted.size() / 50];
-    }
+    std::tie(low, high) = trimmed_range(values, 50);
   } else {
     for (const auto& landmark : map.landmarks()) values.push_back(std::log(std::max<double>(1, landmark.num_observations)));
   }
@@ -41,12 +39,6 @@ std::vector<Rgb> landmark_colors(const MapView& map, const std::vector<Eigen::Ve
     colors.push_back(ramp[static_cast<std::size_t>(std::lround(fraction * static_cast<double>(ramp.size() - 1)))]);
   }
   return colors;
-}
-
-std::string printable(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }, '?');
-  return text;
 }
 
 /// The bytes of a number, lowest first, whatever the machine.
@@ -76,9 +68,7 @@ ColmapImage make_image(const MapView& map, std::uint32_t keyframe, const std::ve
                        std::vector<std::uint32_t>* buffer) {
   const Intrinsics& color = map.info().camera.color;
   const Rigid3 T_camera_map = map.keyframe_pose(keyframe).inverse();
-  char name[32];
-  std::snprintf(name, sizeof name, "keyframe-%06u", keyframe);
-  ColmapImage image{keyframe + 1, 1, T_camera_map * T_out.inverse(), name, {}};
+  ColmapImage image{keyframe + 1, 1, T_camera_map * T_out.inverse(), tools::text_of("keyframe-%06u", keyframe), {}};
   const std::size_t count = map.keyframe_landmarks(keyframe, *buffer);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t landmark = (*buffer)[i];
@@ -102,14 +92,12 @@ Status check_export(const MapView& map, const ExportOptions& options) {
 }
 
 std::string describe_export(const MapView& map, const ExportOptions& options) {
-  char id[32];
-  std::snprintf(id, sizeof id, "%016llx", static_cast<unsigned long long>(map.info().map_id));
-  return "camloc map " + printable(map.info().name) + " (" + id + "), metres, " +
+  return "camloc map " + tools::printable(map.info().name) + tools::text_of(" (%016llx), metres, ", tools::llu(map.info().map_id)) +
          (options.use_wcs ? "coordinates of the site (wcs)" : "coordinates of the map");
 }
 
 std::string format_ply(const MapView& map, const ExportOptions& options) {
-  const std::vector<Eigen::Vector3d> positions = landmark_positions(map);
+  const std::vector<Eigen::Vector3d> positions = tools::landmark_positions(map);
   const std::vector<Rgb> colors = landmark_colors(map, positions, options.coloring);
   const Rigid3 T_out = T_out_map(map, options);
   std::string bytes = ply_header(map, options);
@@ -132,7 +120,7 @@ std::string format_ply(const MapView& map, const ExportOptions& options) {
 }
 
 ColmapModel make_colmap_model(const MapView& map, const ExportOptions& options) {
-  const std::vector<Eigen::Vector3d> positions = landmark_positions(map);
+  const std::vector<Eigen::Vector3d> positions = tools::landmark_positions(map);
   const std::vector<Rgb> colors = landmark_colors(map, positions, options.coloring);
   const Rigid3 T_out = T_out_map(map, options);
   ColmapModel model;
@@ -154,4 +142,4 @@ std::string format_tum(const MapView& map, const ExportOptions& options) {
   return text;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

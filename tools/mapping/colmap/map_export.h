@@ -10,7 +10,7 @@
 #include "core/map/map_view.h"
 #include "tools/mapping/colmap/colmap_model.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 enum class PointColoring { kHeight, kObservations };
 
@@ -36,4 +36,4 @@ struct ExportOptions {
 /// "map NAME (0123456789abcdef), metres, ...": what a file that was exported says about its origin; one line.
 [[nodiscard]] std::string describe_export(const MapView& map, const ExportOptions& options);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -8,8 +8,12 @@
 #include "drivers/frame_source.h"
 #include "tools/common/frame_reading.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
+
+constexpr int kPixelStep = 2;            // along rows and columns
+constexpr double kMaxDepthM = 3.5;       // farther, the noise of depth cameras exceeds centimetres
+constexpr std::uint32_t kMinPoints = 3;  // a voxel with fewer is a flying pixel
 
 /// A neighbour that is farther away than noise and slope explain: the pixel may mix both sides.
 bool is_at_edge(const RgbdCamera& camera, ImageView<std::uint16_t> depth, int x, int y, double z_m) {
@@ -25,34 +29,32 @@ bool is_at_edge(const RgbdCamera& camera, ImageView<std::uint16_t> depth, int x,
 
 }  // namespace
 
-void add_depth_image(const RgbdCamera& camera, ImageView<std::uint16_t> depth, const Rigid3& T_world_camera,
-                     const DenseCloudOptions& options, CloudAccumulator* cloud) {
+void add_depth_image(const RgbdCamera& camera, ImageView<std::uint16_t> depth, const Rigid3& T_world_camera, CloudAccumulator* cloud) {
   const Rigid3 T_world_depth = camera.is_depth_registered ? T_world_camera : T_world_camera * camera.T_color_depth;
   const Intrinsics& lens = camera.is_depth_registered ? camera.color : camera.depth;
-  for (int y = options.pixel_step / 2; y < depth.height; y += options.pixel_step) {
-    for (int x = options.pixel_step / 2; x < depth.width; x += options.pixel_step) {
+  for (int y = kPixelStep / 2; y < depth.height; y += kPixelStep) {
+    for (int x = kPixelStep / 2; x < depth.width; x += kPixelStep) {
       const auto z_m = static_cast<double>(camera.depth_m(depth.at(x, y)));
-      if (z_m <= 0 || z_m > options.max_depth_m || is_at_edge(camera, depth, x, y, z_m)) continue;
+      if (z_m <= 0 || z_m > kMaxDepthM || is_at_edge(camera, depth, x, y, z_m)) continue;
       const Eigen::Vector2d ray = lens.undistort({x, y});
       cloud->add(T_world_depth * Eigen::Vector3d(z_m * ray.x(), z_m * ray.y(), z_m));
     }
   }
 }
 
-Result<PointCloud> fuse_dense_cloud(const PosedFrames& frames, const RgbdCamera& camera, const DenseCloudOptions& options,
-                                    const FrameProgress& progress) {
+Result<PointCloud> fuse_dense_cloud(const PosedFrames& frames, const RgbdCamera& camera, double voxel_m, WorkObserver& observer) {
   auto source = open_frame_source(frames.url);
   if (!source.is_ok()) return source.status();
-  CloudAccumulator accumulator({options.voxel_m, 1, options.min_points});
+  CloudAccumulator accumulator({voxel_m, 1, kMinPoints});
   const Intrinsics& lens = camera.is_depth_registered ? camera.color : camera.depth;
   std::uint64_t done = 0;
   const auto add = [&](FrameBuffer& buffer) -> Status {
-    if (progress && !progress(++done, frames.T_map_camera_of_frame.size()))
+    if (!observer.on_progress("fusing depth images: " + std::to_string(++done) + " of " +
+                              std::to_string(frames.T_map_camera_of_frame.size())))
       return {ErrorCode::kIo, "interrupted while fusing depth images"};
     const auto pose = frames.T_map_camera_of_frame.find(buffer.sequence);
     const bool is_usable = buffer.depth.width == lens.width && buffer.depth.height == lens.height;
-    if (pose != frames.T_map_camera_of_frame.end() && is_usable)
-      add_depth_image(camera, buffer.depth.view(), pose->second, options, &accumulator);
+    if (pose != frames.T_map_camera_of_frame.end() && is_usable) add_depth_image(camera, buffer.depth.view(), pose->second, &accumulator);
     return Status::ok();
   };
   if (const auto counts = tools::read_frames(*source.value(), add); !counts) return counts.status();
@@ -61,4 +63,4 @@ Result<PointCloud> fuse_dense_cloud(const PosedFrames& frames, const RgbdCamera&
   return cloud;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

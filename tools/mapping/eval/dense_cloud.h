@@ -5,34 +5,24 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 
 #include "core/base/frame.h"
 #include "core/base/result.h"
+#include "core/base/work_observer.h"
 #include "core/geometry/camera.h"
 #include "tools/mapping/build/posed_frames.h"
 #include "tools/mapping/cloud/point_cloud.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
-struct DenseCloudOptions {
-  int pixel_step = 2;        ///< every so many pixels, along rows and columns
-  double max_depth_m = 3.5;  ///< farther, the noise of depth cameras exceeds centimetres
-  double voxel_m = 0.01;
-  std::uint32_t min_points = 3;  ///< a voxel with fewer is a flying pixel
-};
-
-/// Called with every frame that could be read; false stops.
-using FrameProgress = std::function<bool(std::uint64_t done, std::uint64_t total)>;
-
-/// Depth pixels at depth edges are left out. Points are in the frame of the poses. Errors: of opening the recording; kInvalid
+/// Every second depth pixel of every second row; those farther than 3.5 m or at depth edges, and voxels with fewer than three points,
+/// are left out. Points are in the frame of the poses. Errors: of opening the recording; kInvalid
 /// when no depth is left; kIo when stopped. Broken frames are skipped.
-[[nodiscard]] Result<PointCloud> fuse_dense_cloud(const PosedFrames& frames, const RgbdCamera& camera, const DenseCloudOptions& options,
-                                                  const FrameProgress& progress = {});
+[[nodiscard]] Result<PointCloud> fuse_dense_cloud(const PosedFrames& frames, const RgbdCamera& camera, double voxel_m,
+                                                  WorkObserver& observer = WorkObserver::nobody());
 
 /// The points of one depth image in the frame of T_world_camera (the colour camera's pose).
-void add_depth_image(const RgbdCamera& camera, ImageView<std::uint16_t> depth, const Rigid3& T_world_camera,
-                     const DenseCloudOptions& options, CloudAccumulator* cloud);
+void add_depth_image(const RgbdCamera& camera, ImageView<std::uint16_t> depth, const Rigid3& T_world_camera, CloudAccumulator* cloud);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

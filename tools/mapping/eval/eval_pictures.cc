@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "core/base/order_statistics.h"
+#include "tools/common/text_format.h"
 #include "tools/mapping/cloud/wall_directions.h"
 #include "tools/mapping/picture/point_raster.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr Rgb kPaper{252, 252, 250}, kInk{40, 40, 46}, kGrid{222, 222, 218}, kBar{70, 120, 170}, kMean{200, 80, 30}, kMedian{20, 20, 24},
@@ -19,12 +20,6 @@ constexpr int kWidth = 1400, kMinHeight = 360, kMaxHeight = 1400, kMargin = 50, 
 constexpr double kNearCosine = 0.866;  // 30 degrees
 constexpr double kFullScaleM = 0.10;
 constexpr std::size_t kFirstRampEntry = 70;  // darker ones cannot be told from the background
-
-std::string format_cm(const char* name, double metres) {
-  char text[48];
-  std::snprintf(text, sizeof text, "%s %.2f cm", name, 100 * metres);
-  return text;
-}
 
 /// The cameras' mean up, corrected to the cloud's z axis or else to the walls: who holds a camera looks down a little.
 Eigen::Vector3d up_of(const Evaluation& evaluation, const PointCloud& cloud) {
@@ -115,9 +110,8 @@ std::pair<Viewpoint, int> fit_picture(const Evaluation& evaluation, CloudView vi
   Viewpoint viewpoint = fit(shown, up, kWidth, kMaxHeight, kMargin);
   std::vector<double> rows;
   for (const Eigen::Vector3d& p : shown) rows.push_back((viewpoint.T_view_world * p).y() * viewpoint.px_per_m);
-  std::sort(rows.begin(), rows.end());
-  const double needed = rows.empty() ? 0 : rows[rows.size() - 1 - rows.size() / 100] - rows[rows.size() / 100];
-  const int height = std::clamp(static_cast<int>(needed) + 2 * kMargin, kMinHeight, kMaxHeight);
+  const auto [low, high] = trimmed_range(std::move(rows), 100);
+  const int height = std::clamp(static_cast<int>(high - low) + 2 * kMargin, kMinHeight, kMaxHeight);
   viewpoint = fit(shown, up, kWidth, height, kMargin);
   viewpoint.center_v += kHeader;
   return {viewpoint, height + kHeader + kFooter};
@@ -140,8 +134,7 @@ ColorImage draw_histogram(const CloudDistances& distances, const std::string& ti
   for (double share = 0; share < 1.08 * highest; share += grid) {
     const int v = base - static_cast<int>(share * scale);
     raster.add_rectangle(kLeft, v, (kBins + 4) * kBinPx, 1, kGrid);
-    char label[16];
-    std::snprintf(label, sizeof label, "%.0f %%", 100 * share);
+    const std::string label = tools::text_of("%.0f %%", 100 * share);
     raster.add_text(kLeft - 12 - PointRaster::text_width(label, 11), v + 5, label, 11, kInk);
   }
   for (int bin = 0; bin <= kBins; ++bin) {
@@ -166,13 +159,11 @@ ColorImage draw_histogram(const CloudDistances& distances, const std::string& ti
     const int u = kLeft + static_cast<int>(std::min(1.02, mark.value / kFullScaleM) * kBins * kBinPx);
     raster.add_rectangle(u - 1, kTop, 2, kPlotHeight, mark.color);
     raster.add_rectangle(kKeyU - 26, row - 7, 18, 2, mark.color);
-    raster.add_text(kKeyU, row, format_cm(mark.name, mark.value), 12, mark.color);
+    raster.add_text(kKeyU, row, tools::text_of("%s %.2f cm", mark.name, 100 * mark.value), 12, mark.color);
     row += 22;
   }
-  char note[160];
-  std::snprintf(note, sizeof note, "%llu landmarks near the cloud, %.1f %% within 3 cm, %.1f %% within 5 cm; %llu outside of it",
-                static_cast<unsigned long long>(d.count), 100 * d.share_3cm, 100 * d.share_5cm,
-                static_cast<unsigned long long>(distances.num_outside));
+  const std::string note = tools::text_of("%llu landmarks near the cloud, %.1f %% within 3 cm, %.1f %% within 5 cm; %llu outside of it",
+                                          tools::llu(d.count), 100 * d.share_3cm, 100 * d.share_5cm, tools::llu(distances.num_outside));
   raster.add_text(kLeft, 60, note, 12, kInk);
   return raster.image();
 }
@@ -194,4 +185,4 @@ ColorImage draw_cloud_view(const Evaluation& evaluation, const PointCloud& cloud
   return raster.image();
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -12,7 +12,7 @@
 #include "tools/mapping/cloud/point_cloud.h"
 #include "tools/mapping/eval/evaluation.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 /// Landmark-to-point distances in steps of 2.5 mm up to 10 cm and the rest, with mean, median and 95th percentile.
 [[nodiscard]] ColorImage draw_histogram(const CloudDistances& distances, const std::string& title);
@@ -23,4 +23,4 @@ namespace camloc::map_tool {
 enum class CloudView { kTop, kSide };
 [[nodiscard]] ColorImage draw_cloud_view(const Evaluation& evaluation, const PointCloud& cloud, CloudView view, const std::string& title);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -3,18 +3,20 @@
 #include "tools/mapping/eval/eval_report.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
+#include "tools/common/json_text.h"
 #include "tools/common/text_format.h"
+#include "tools/mapping/eval/eval_warnings.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using tools::append_text;
 using tools::degrees;
+using tools::Json;
+using tools::json_of;
+using tools::llu;
 
-unsigned long long count(std::uint64_t value) { return value; }
 double percent(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }
@@ -22,11 +24,11 @@ double percent(std::uint64_t part, std::uint64_t whole) {
 void append_inputs(const EvalSummary& s, std::string* text) {
   const Evaluation& e = s.evaluation;
   append_text(text, "%-22s%s\n", "map", s.map_path.c_str());
-  append_text(text, "%-22s%llu of %llu with at least %u observations, %llu keyframes\n", "landmarks", count(e.num_used),
-              count(e.num_landmarks), s.min_observations, count(e.num_keyframes));
+  append_text(text, "%-22s%llu of %llu with at least %u observations, %llu keyframes\n", "landmarks", llu(e.num_used), llu(e.num_landmarks),
+              s.min_observations, llu(e.num_keyframes));
   append_text(text, "%-22s%s\n", "cloud", s.cloud_name.c_str());
-  append_text(text, "%-22s%llu read, %llu of them invalid, %llu kept (voxel %.3g m)\n", "points", count(s.num_read), count(s.num_invalid),
-              count(s.num_points), s.voxel_m);
+  append_text(text, "%-22s%llu read, %llu of them invalid, %llu kept (voxel %.3g m)\n", "points", llu(s.num_read), llu(s.num_invalid),
+              llu(s.num_points), s.voxel_m);
 }
 
 void append_alignment(const EvalSummary& s, std::string* text) {
@@ -39,8 +41,8 @@ void append_alignment(const EvalSummary& s, std::string* text) {
   if (e.registration) {
     const Registration& r = *e.registration;
     append_text(text, "%-22smoved by %.3f m, %.2f deg in %d iterations%s; %llu of %llu landmarks used, %.1f mm RMS to the surface\n", "ICP",
-                e.moved_m, degrees(e.moved_rad), r.num_iterations, r.is_converged ? "" : " (not converged)", count(r.num_correspondences),
-                count(r.num_points), 1000 * r.rms_m);
+                e.moved_m, degrees(e.moved_rad), r.num_iterations, r.is_converged ? "" : " (not converged)", llu(r.num_correspondences),
+                llu(r.num_points), 1000 * r.rms_m);
   } else {
     append_text(text, "%-22snone\n", "ICP");
   }
@@ -54,7 +56,7 @@ void append_points(const Evaluation& e, std::string* text) {
 }
 
 void append_row(const char* name, const DistanceStatistics& d, std::string* text) {
-  append_text(text, "  %-26s%9llu%8.2f%8.2f%8.2f%8.2f%8.1f%8.1f\n", name, count(d.count), 100 * d.mean_m, 100 * d.median_m, 100 * d.rms_m,
+  append_text(text, "  %-26s%9llu%8.2f%8.2f%8.2f%8.2f%8.1f%8.1f\n", name, llu(d.count), 100 * d.mean_m, 100 * d.median_m, 100 * d.rms_m,
               100 * d.p95_m, 100 * d.share_3cm, 100 * d.share_5cm);
 }
 
@@ -66,10 +68,9 @@ void append_distances(const EvalSummary& s, std::string* text) {
   append_row("all landmarks to point", d.all, text);
   append_row("cloud cell to landmark", d.cells, text);
   append_text(text, "\n%-22s%llu of %llu landmarks (%.1f %%) are farther than %.2g m from the cloud\n", "outside the scan",
-              count(d.num_outside), count(s.evaluation.num_used), percent(d.num_outside, s.evaluation.num_used),
-              s.evaluation.max_distance_m);
+              llu(d.num_outside), llu(s.evaluation.num_used), percent(d.num_outside, s.evaluation.num_used), s.evaluation.max_distance_m);
   append_text(text, "%-22s%.1f %% of %llu cells of the cloud near the keyframes have a landmark within 0.25 m\n", "coverage",
-              percent(d.num_covered, d.num_cells), count(d.num_cells));
+              percent(d.num_covered, d.num_cells), llu(d.num_cells));
 }
 
 void append_scale(const Evaluation& e, std::string* text) {
@@ -86,12 +87,8 @@ Json to_json(const DistanceStatistics& d) {
           {"p95_m", d.p95_m}, {"max_m", d.max_m},   {"share_3cm", d.share_3cm}, {"share_5cm", d.share_5cm}};
 }
 
-Json to_json(const Rigid3& T) {
-  return {{"translation_m", {T.translation.x(), T.translation.y(), T.translation.z()}},
-          {"rotation_wxyz", {T.rotation.w(), T.rotation.x(), T.rotation.y(), T.rotation.z()}}};
-}
+Json to_json(const Rigid3& T) { return {{"translation_m", json_of(T.translation)}, {"rotation_wxyz", json_of(T.rotation)}}; }
 
-Json to_json(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
 Json to_json(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
 Json alignment_json(const Evaluation& e) {
@@ -113,13 +110,13 @@ Json alignment_json(const Evaluation& e) {
                    {"moved_m", e.moved_m},
                    {"moved_deg", degrees(e.moved_rad)},
                    {"weakest_share", r.weakest_share},
-                   {"weakest_direction", to_json(r.weakest_direction)}};
+                   {"weakest_direction", json_of(r.weakest_direction)}};
   }
   for (const PointResidual& point : e.residuals) {
     json["control_points"].push_back({{"name", point.name},
                                       {"sigma_m", point.sigma_m},
-                                      {"residual_fit_m", to_json(point.aligned_m)},
-                                      {"residual_icp_m", to_json(point.final_m)}});
+                                      {"residual_fit_m", json_of(point.aligned_m)},
+                                      {"residual_icp_m", json_of(point.final_m)}});
   }
   return json;
 }
@@ -135,7 +132,7 @@ std::string format_table(const EvalSummary& s) {
   append_scale(s.evaluation, &text);
   for (const std::string& file : s.files) append_text(&text, "%-22s%s\n", "written", file.c_str());
   append_text(&text, "%-22s%.1f s\n", "time", s.seconds);
-  for (const std::string& warning : s.evaluation.warnings) append_text(&text, "WARNING %s\n", warning.c_str());
+  for (const std::string& warning : warnings_of(s.evaluation)) append_text(&text, "WARNING %s\n", warning.c_str());
   return text;
 }
 
@@ -157,12 +154,12 @@ std::string format_json(const EvalSummary& s) {
                    {"icp_sigma", to_json(e.sigma_scale)},
                    {"control_points", to_json(e.points_scale)},
                    {"camera_positions", to_json(e.poses_scale)},
-                   {"map_extent_m", to_json(d.map_extent_m)},
-                   {"cloud_extent_m", to_json(d.cloud_extent_m)},
+                   {"map_extent_m", json_of(d.map_extent_m)},
+                   {"cloud_extent_m", json_of(d.cloud_extent_m)},
                    {"volume_ratio", d.volume_ratio()}};
-  json["warnings"] = e.warnings;
+  json["warnings"] = warnings_of(e);
   json["files"] = s.files;
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return tools::json_text(json);
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

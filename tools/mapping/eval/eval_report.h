@@ -9,7 +9,7 @@
 
 #include "tools/mapping/eval/evaluation.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 struct EvalSummary {
   std::string map_path, cloud_name;
@@ -24,4 +24,4 @@ struct EvalSummary {
 [[nodiscard]] std::string format_table(const EvalSummary& summary);
 [[nodiscard]] std::string format_json(const EvalSummary& summary);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -7,7 +7,7 @@
 
 #include "tools/common/text_format.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using tools::text_of;
@@ -79,4 +79,4 @@ std::vector<std::string> warnings_of(const Evaluation& evaluation) {
   return warnings;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

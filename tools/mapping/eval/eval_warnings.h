@@ -9,10 +9,9 @@
 
 #include "tools/mapping/eval/evaluation.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
-/// One line each, that begins with a word in capitals: SCALE, VOLUME, POINTS, START, OVERLAP, SLIDING, ICP. `evaluation` is
-/// complete but for its warnings.
+/// One line each, that begins with a word in capitals: SCALE, VOLUME, POINTS, START, OVERLAP, SLIDING, ICP.
 [[nodiscard]] std::vector<std::string> warnings_of(const Evaluation& evaluation);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

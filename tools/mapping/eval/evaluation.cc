@@ -1,5 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// evaluate_map is the job on one screen: find a start (points, trajectory, datum, or a search from which every candidate is refined
+// and the best compared with its rivals), refine it by trimmed ICP, check the scale, measure distances both ways. Everything is
+// relative to the cloud's origin until the result is made absolute: survey coordinates do not fit floats.
 #include "tools/mapping/eval/evaluation.h"
 
 #include <algorithm>
@@ -8,10 +12,10 @@
 #include <numeric>
 
 #include "core/geometry/alignment.h"
+#include "tools/common/map_points.h"
 #include "tools/common/text_format.h"
-#include "tools/mapping/eval/eval_warnings.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using tools::text_of;
@@ -27,10 +31,7 @@ struct MapPoints {
 };
 
 MapPoints points_of(const MapView& map, std::uint32_t min_observations) {
-  MapPoints points;
-  map.for_each_position([&](const auto& landmark, const Eigen::Vector3f& position_m) {
-    if (landmark.num_observations >= min_observations) points.landmarks.push_back(position_m.cast<double>());
-  });
+  MapPoints points{tools::landmark_positions(map, min_observations), {}};
   for (std::uint32_t i = 0; i < map.keyframes().size(); ++i) points.T_map_keyframe.push_back(map.keyframe_pose(i));
   return points;
 }
@@ -236,9 +237,7 @@ const char* describe(AlignStart start) {
   return "";
 }
 
-Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOptions& options,
-                                const std::function<bool(const std::string&)>& say) {
-  const auto is_stopped = [&](const char* stage) { return say && !say(stage); };
+Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOptions& options, WorkObserver& observer) {
   const Status stopped(ErrorCode::kIo, "interrupted");
   const MapPoints points = points_of(*input.map, options.min_observations);
   if (const Status checked = check_points(*input.map, points, options.min_observations); !checked.is_ok()) return checked;
@@ -248,15 +247,15 @@ Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOp
   result.num_used = points.landmarks.size();
   result.num_keyframes = points.T_map_keyframe.size();
 
-  if (is_stopped("indexing the cloud ...")) return stopped;
+  if (!observer.on_progress("indexing the cloud ...")) return stopped;
   CloudIndex cloud(input.cloud->points_m);
-  if (is_stopped("looking for a start ...")) return stopped;
+  if (!observer.on_progress("looking for a start ...")) return stopped;
   result.start = choose_start(input, options.start);
   const auto start = find_start(input, points, options, &cloud, &result);
   if (!start.is_ok()) return start.status();
   Rigid3 T_cloud_map = start.value();
   if (options.has_icp) {
-    if (is_stopped("aligning ...")) return stopped;
+    if (!observer.on_progress("aligning ...")) return stopped;
     const auto refined = refine(points, T_cloud_map, options, result.start, &cloud);
     if (!refined.is_ok()) {
       return {ErrorCode::kNotFound,
@@ -265,18 +264,17 @@ Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOp
     result.registration = refined.value();
     T_cloud_map = refined.value().T_cloud_map.rigid;
   }
-  if (is_stopped("checking the scale ...")) return stopped;
+  if (!observer.on_progress("checking the scale ...")) return stopped;
   check_scale(input, points, T_cloud_map, options, &cloud, &result);
 
-  if (is_stopped("measuring distances ...")) return stopped;
+  if (!observer.on_progress("measuring distances ...")) return stopped;
   for (const Eigen::Vector3d& p : points.landmarks) result.landmarks_m.push_back(T_cloud_map * p);
   for (const Rigid3& T : points.T_map_keyframe) {
     result.T_cloud_keyframe.push_back(T_cloud_map * T);
     result.keyframes_m.push_back(result.T_cloud_keyframe.back().translation);
   }
-  DistanceOptions distance = options.distance;
-  distance.max_distance_m = result.max_distance_m = options.max_distance_m;
-  result.distances = measure_distances(result.landmarks_m, result.keyframes_m, &cloud, distance);
+  result.max_distance_m = options.max_distance_m;
+  result.distances = measure_distances(result.landmarks_m, result.keyframes_m, &cloud, options.max_distance_m);
   measure_residuals(input, T_cloud_map, &result);
   const auto absolute = [&](Rigid3 T) {
     T.translation += input.cloud->origin_m;
@@ -288,8 +286,7 @@ Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOp
                                  static_cast<double>(points.landmarks.size());
   result.moved_m = (T_cloud_map * center - start.value() * center).norm();
   result.moved_rad = rotation_distance_rad(T_cloud_map.rotation, start.value().rotation);
-  result.warnings = warnings_of(result);
   return result;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -6,12 +6,12 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/base/work_observer.h"
 #include "core/geometry/rigid3.h"
 #include "core/map/map_view.h"
 #include "tools/mapping/cloud/cloud_distance.h"
@@ -19,7 +19,7 @@
 #include "tools/mapping/cloud/point_cloud.h"
 #include "tools/mapping/site/point_pairs.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 enum class AlignStart { kAuto, kPoints, kTrajectory, kDatum, kNone, kSearch };
 
@@ -29,7 +29,6 @@ struct EvaluationOptions {
   double trim = 0.9;
   double max_distance_m = 0.5;
   std::uint32_t min_observations = 2;
-  DistanceOptions distance;  ///< its max_distance_m is not used
 };
 
 /// The same camera at the same moment, in the map and in the frame of the cloud.
@@ -72,18 +71,17 @@ struct Evaluation {
   std::vector<PointResidual> residuals;
   double max_distance_m = 0.5;  ///< farther from the cloud is outside of it
   CloudDistances distances;
-  std::vector<std::string> warnings;
   std::vector<Eigen::Vector3d> landmarks_m, keyframes_m;  ///< for pictures; relative to the cloud's origin, aligned
   std::vector<Rigid3> T_cloud_keyframe;
 };
 
-/// `say` names the stage that begins and returns false to stop. Errors: kInvalid when the map has no landmarks with enough
+/// Errors: kInvalid when the map has no landmarks with enough
 /// observations, a start was asked for that the input does not give, the cloud seems to be in millimetres; kNotFound
 /// when map and cloud do not overlap; kIo when stopped.
 [[nodiscard]] Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOptions& options,
-                                              const std::function<bool(const std::string&)>& say = {});
+                                              WorkObserver& observer = WorkObserver::nobody());
 
 /// Name of a start, as in the report.
 [[nodiscard]] const char* describe(AlignStart start);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -1,16 +1,20 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// A sheet is panels over one Scene: from above, in perspective, and where a fix is to be expected, with the list of weak places that
+// the numbers in the picture belong to.
 #include "tools/mapping/picture/map_picture.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 
-#include "tools/mapping/picture/map_scene.h"
+#include "tools/common/text_format.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
+
+using tools::text_of;
 
 constexpr Rgb kBackground{252, 252, 250}, kInk{40, 40, 46}, kSoftInk{110, 112, 120}, kFrame{222, 222, 218};
 constexpr Rgb kLandmark{186, 190, 200}, kCamera{222, 70, 0}, kTrajectory{20, 20, 24};
@@ -41,11 +45,10 @@ void draw_frame(PointRaster* raster, int width, int height, const std::string& t
 }
 
 void draw_height_legend(const Scene& scene, PointRaster* raster, int width, int height) {
-  char low[32], high[32];
-  std::snprintf(low, sizeof low, "height %.1f m", std::round(10 * scene.low_m) / 10 + 0.0);  // no "-0.0"
-  std::snprintf(high, sizeof high, "%.1f m", std::round(10 * scene.high_m) / 10 + 0.0);
+  const auto tenths = [](double value) { return std::round(10 * value) / 10 + 0.0; };  // no "-0.0"
   raster->add_rectangle(width - 256, height - 44, 250, 42, kBackground);
-  raster->add_legend(width - 246, height - 40, 230, low, high, paper_ramp());
+  raster->add_legend(width - 246, height - 40, 230, text_of("height %.1f m", tenths(scene.low_m)), text_of("%.1f m", tenths(scene.high_m)),
+                     paper_ramp());
 }
 
 void draw_walk(const Scene& scene, const Viewpoint& view, double line_px, PointRaster* raster) {
@@ -212,9 +215,8 @@ void draw_shares(const Scene& scene, PointRaster* raster, int* v) {
   for (const FixOutlook outlook : {FixOutlook::kLikely, FixOutlook::kLookAlike, FixOutlook::kScanAgain}) {
     const auto count =
         std::count_if(places.begin(), places.end(), [&](const KeyframeLocalizability& place) { return place.outlook == outlook; });
-    char share[32];
-    std::snprintf(share, sizeof share, "%.1f %%",
-                  100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, places.size())));
+    const std::string share =
+        text_of("%.1f %%", 100.0 * static_cast<double>(count) / static_cast<double>(std::max<std::size_t>(1, places.size())));
     raster->add_rectangle(12, *v - 12, 16, 14, color_of(outlook));
     raster->add_text(38, *v, words_for(outlook), kTextPx, kInk);
     raster->add_text(330 - PointRaster::text_width(share, kTextPx), *v, share, kTextPx, kInk);
@@ -243,8 +245,7 @@ ColorImage draw_list(const Scene& scene, int width, int height) {
   for (std::size_t i = 0; i < scene.picture->weak.size(); ++i) {
     const WeakPlace& weak = scene.picture->weak[i];
     const Eigen::Vector3d at = shown_position(map, weak.keyframe);
-    char head[160];
-    std::snprintf(head, sizeof head, "%.1f %.1f %.1f  %s", at.x(), at.y(), at.z(), words_for(weak.outlook));
+    const std::string head = text_of("%.1f %.1f %.1f  %s", at.x(), at.y(), at.z(), words_for(weak.outlook));
     const std::vector<std::string> lines = wrapped(explain(map, scene.picture->places[weak.keyframe]), width - 50, kSmallPx);
     if (v + 17 * static_cast<int>(lines.size()) > height - 8) break;
     raster.add_rectangle(12, v - 12, 20, 16, color_of(weak.outlook));
@@ -331,4 +332,4 @@ ColorImage draw_map(const MapPicture& picture, MapPanel panel, int width_px) {
   return image;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

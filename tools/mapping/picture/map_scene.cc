@@ -8,10 +8,13 @@
 #include <numbers>
 
 #include "core/base/order_statistics.h"
+#include "tools/common/map_points.h"
 #include "tools/mapping/site/map_up.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
+
+constexpr double kCutAboveCamerasM = 0.6;  // landmarks higher above the highest keyframe hide the floor plan
 
 /// Along an axis: landmarks from the 1st to the 99th percentile, and everything that was walked.
 Extent extent_along(const Scene& scene, const Eigen::Vector3d& axis) {
@@ -59,7 +62,7 @@ Scene make_scene(const MapPicture& picture) {
   }
   for (const Rigid3& pose : picture.trajectory) scene.walk.push_back(pose.translation);
   std::vector<double> heights;
-  for (const Eigen::Vector3d& p : landmark_positions(map)) {
+  for (const Eigen::Vector3d& p : tools::landmark_positions(map)) {
     const double height = scene.up.dot(p);
     scene.is_cut = scene.is_cut || height > cut_m;
     if (height > cut_m) continue;
@@ -110,4 +113,4 @@ Viewpoint top_view(const Plan& plan, int width, int height, int margin_px) {
   return view;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

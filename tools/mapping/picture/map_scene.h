@@ -10,12 +10,20 @@
 #include <span>
 #include <vector>
 
-#include "tools/mapping/picture/map_picture.h"
+#include "core/map/map_view.h"
+#include "core/mapmaking/localizability.h"
 #include "tools/mapping/picture/point_raster.h"
+#include "tools/mapping/picture/weak_places.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
-inline constexpr double kCutAboveCamerasM = 0.6;  ///< landmarks higher above the highest keyframe hide the floor plan
+/// What there is to draw.
+struct MapPicture {
+  const MapView* map = nullptr;
+  std::vector<KeyframeLocalizability> places;  ///< one a keyframe
+  std::vector<WeakPlace> weak;                 ///< numbered in the picture from 1
+  std::vector<Rigid3> trajectory;              ///< T_map_camera in order; may be empty
+};
 
 struct Scene {
   const MapPicture* picture = nullptr;
@@ -47,4 +55,4 @@ struct Plan {
 [[nodiscard]] Plan make_plan(const Scene& scene);
 [[nodiscard]] Viewpoint top_view(const Plan& plan, int width, int height, int margin_px);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Points go through a depth buffer of our own; lines and text are OpenCV's, drawn over everything.
 #include "tools/mapping/picture/point_raster.h"
 
 #include <algorithm>
@@ -10,7 +12,9 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-namespace camloc::map_tool {
+#include "tools/common/text_format.h"
+
+namespace camloc::mapping {
 namespace {
 
 constexpr double kNearM = 0.05;          // perspective: what is closer to the eye is not drawn
@@ -45,8 +49,6 @@ std::vector<Eigen::Vector2i> disc(double radius_px) {
   }
   return offsets;
 }
-
-double to_linear_light(double srgb) { return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4); }
 
 std::uint8_t to_srgb_byte(double linear) {
   const double clipped = std::clamp(linear, 0.0, 1.0);
@@ -172,14 +174,9 @@ void PointRaster::add_scale_bar(const Viewpoint& view, int u, int v, Rgb color) 
   add_rectangle(u, v - 1, length_px, 3, color);
   add_rectangle(u, v - 5, 2, 11, color);
   add_rectangle(u + length_px - 2, v - 5, 2, 11, color);
-  char label[32];
-  std::snprintf(label, sizeof label,
-                length_m < 0.01 ? "%g mm"
-                : length_m < 1  ? "%g cm"
-                                : "%g m",
-                length_m < 0.01 ? 1000 * length_m
-                : length_m < 1  ? 100 * length_m
-                                : length_m);
+  const std::string label = length_m < 0.01 ? tools::text_of("%g mm", 1000 * length_m)
+                            : length_m < 1  ? tools::text_of("%g cm", 100 * length_m)
+                                            : tools::text_of("%g m", length_m);
   add_text(u + length_px + 8, v + static_cast<int>(kTextHeightPx) / 2, label, kTextHeightPx, color);
 }
 
@@ -202,10 +199,4 @@ std::span<const Rgb> value_ramp() {
   return ramp;
 }
 
-double lightness_of(Rgb color) {
-  const double y =
-      0.2126 * to_linear_light(color[0] / 255.0) + 0.7152 * to_linear_light(color[1] / 255.0) + 0.0722 * to_linear_light(color[2] / 255.0);
-  return y > 216.0 / 24389 ? 116 * std::cbrt(y) - 16 : y * 24389 / 27;
-}
-
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -15,7 +15,7 @@
 #include "core/geometry/rigid3.h"
 #include "core/io/image_file.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
@@ -71,7 +71,5 @@ class PointRaster {
 /// Perceptually even ramp (256 entries) for values, from dark blue over green to bright yellow: its lightness grows evenly, so
 /// it is readable without red-green vision and in grey.
 [[nodiscard]] std::span<const Rgb> value_ramp();
-/// CIE lightness L* of a screen colour, 0 (black) to 100 (white).
-[[nodiscard]] double lightness_of(Rgb color);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -7,9 +7,10 @@
 #include <limits>
 #include <numbers>
 
+#include "core/base/order_statistics.h"
 #include "tools/mapping/picture/point_raster.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::size_t kMaxSamples = 20000;  // enough for percentiles, and a cloud of millions costs nothing
@@ -29,21 +30,17 @@ std::vector<Eigen::Vector3d> samples_of(std::span<const Eigen::Vector3d> points)
   return samples;
 }
 
-Range percentiles(std::vector<double>* values) {
-  if (values->empty()) return {-0.5, 0.5};
-  const auto at = [&](std::size_t rank) {
-    std::nth_element(values->begin(), values->begin() + static_cast<std::ptrdiff_t>(rank), values->end());
-    return (*values)[rank];
-  };
-  const std::size_t low = values->size() / 100;
-  return {at(low), at(values->size() - 1 - low)};
+Range percentiles(std::vector<double> values) {
+  if (values.empty()) return {-0.5, 0.5};
+  const auto [low, high] = trimmed_range(std::move(values), 100);
+  return {low, high};
 }
 
 Range range_along(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& axis) {
   std::vector<double> values;
   values.reserve(points.size());
   for (const Eigen::Vector3d& p : points) values.push_back(axis.dot(p));
-  return percentiles(&values);
+  return percentiles(std::move(values));
 }
 
 /// How much the points crowd at few places along `axis`: walls across it do that.
@@ -134,7 +131,7 @@ Viewpoint fit_perspective_view(std::span<const Eigen::Vector3d> points, const Ei
     us.push_back(p_view.x() / p_view.z());
     vs.push_back(p_view.y() / p_view.z());
   }
-  const Range u = percentiles(&us), v = percentiles(&vs);
+  const Range u = percentiles(std::move(us)), v = percentiles(std::move(vs));
   const auto fill = [&](int pixels, const Range& range) {
     return std::max(1, pixels - 2 * margin_px) / std::max(0.01, range.high - range.low);
   };
@@ -144,4 +141,4 @@ Viewpoint fit_perspective_view(std::span<const Eigen::Vector3d> points, const Ei
   return view;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

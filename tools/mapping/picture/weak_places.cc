@@ -9,7 +9,7 @@
 #include "core/base/order_statistics.h"
 #include "tools/common/text_format.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using tools::text_of;
@@ -124,4 +124,4 @@ std::string format_places(const MapView& map, const std::vector<KeyframeLocaliza
   return text;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

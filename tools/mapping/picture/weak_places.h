@@ -10,7 +10,7 @@
 #include "core/map/map_view.h"
 #include "core/mapmaking/localizability.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 /// Neighbouring keyframes of the same outlook that look the same way, spoken for by the worst of them. Of two places that look like
 /// each other one is named.
@@ -38,4 +38,4 @@ struct WeakPlace {
 [[nodiscard]] std::string format_places(const MapView& map, const std::vector<KeyframeLocalizability>& places,
                                         const std::vector<WeakPlace>& weak);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 #include "core/base/order_statistics.h"
+#include "tools/common/text_format.h"
 #include "tools/mapping/site/consensus.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr double kMaxTiltCosine = 0.87;  ///< 30 degrees: cameras look up and down
@@ -44,14 +44,11 @@ struct Unit {
 constexpr std::array<Unit, 4> kUnits = {{{1000, "millimetres"}, {100, "centimetres"}, {0.001, "kilometres"}, {3.28084, "feet"}}};
 
 std::string describe_scale(double scale) {
-  char text[64];
   for (const Unit& unit : kUnits) {
     if (std::abs(scale / unit.scale - 1) > 0.03) continue;
-    std::snprintf(text, sizeof text, "when the file is taken as %s", unit.name);
-    return text;
+    return std::string("when the file is taken as ") + unit.name;
   }
-  std::snprintf(text, sizeof text, "when the file is divided by %.4g", scale);
-  return text;
+  return tools::text_of("when the file is divided by %.4g", scale);
 }
 
 std::string describe_mirror(const Alignment& swapped_fit, const std::optional<Eigen::Vector3d>& up_map) {
@@ -98,11 +95,8 @@ std::string explain_misfit(std::span<const PointPair> pairs, std::size_t num_agr
       std::string change;
       if (is_mirrored) change = describe_mirror(align_rigid(agreeing), up_map);
       if (is_rescaled) change += (change.empty() ? "" : " and ") + describe_scale(scale);
-      char text[256];
-      std::snprintf(text, sizeof text, "the residuals drop from %.2f m to %.3f m %s: is the points file in another %s?",
-                    robust_residual_m(pairs), consensus.rms_m, change.c_str(),
-                    is_mirrored ? (is_rescaled ? "axis order and unit" : "axis order") : "unit");
-      return text;
+      return tools::text_of("the residuals drop from %.2f m to %.3f m %s: is the points file in another %s?", robust_residual_m(pairs),
+                            consensus.rms_m, change.c_str(), is_mirrored ? (is_rescaled ? "axis order and unit" : "axis order") : "unit");
     }
   }
   return "";
@@ -127,4 +121,4 @@ std::string check_up(const Rigid3& T_wcs_map, const Eigen::Vector3d& up_map) {
          "Poses will be given in its axes";
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

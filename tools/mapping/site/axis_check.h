@@ -11,7 +11,7 @@
 
 #include "core/geometry/alignment.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 /// A sentence such as "the residuals drop from 3.20 m to 0.02 m with x and y swapped: ..."; empty where nothing helps,
 /// that is where no change makes more pairs agree than the `num_agreeing` that do without one.
@@ -26,4 +26,4 @@ namespace camloc::map_tool {
 /// A warning where the fitted site has its z axis not up; empty where it is.
 [[nodiscard]] std::string check_up(const Rigid3& T_wcs_map, const Eigen::Vector3d& up_map);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

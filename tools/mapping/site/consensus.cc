@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Triples are few, so all are tried. Every set of pairs that agrees with its own alignment is kept, not the best alone: another set of
+// the same size that explains its pairs about as well means that nobody can tell which pair is wrong.
 #include "tools/mapping/site/consensus.h"
 
 #include <algorithm>
@@ -8,7 +11,7 @@
 #include <map>
 #include <random>
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::size_t kMaxTriples = 5000;
@@ -131,4 +134,4 @@ Consensus find_consensus(std::span<const PointPair> pairs, double tolerance_m) {
   return search.result();
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

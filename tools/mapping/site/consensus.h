@@ -11,7 +11,7 @@
 
 #include "core/geometry/alignment.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 struct Consensus {
   std::vector<bool> is_inlier;  ///< as many as pairs; empty when no triple determines a motion
@@ -25,4 +25,4 @@ struct Consensus {
 /// A pair agrees when its residual is below max(4 sigmas, `tolerance_m`). Deterministic.
 [[nodiscard]] Consensus find_consensus(std::span<const PointPair> pairs, double tolerance_m);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -14,7 +14,7 @@
 #include "core/io/file_bytes.h"
 #include "core/io/text.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr double kMaxCoordinateM = 1e8;
@@ -266,4 +266,4 @@ Result<std::vector<ControlObservation>> read_control_observations(const std::str
   return text ? parse_control_observations(*text, path) : Result<std::vector<ControlObservation>>(text.status());
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

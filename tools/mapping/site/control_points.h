@@ -28,7 +28,7 @@
 #include "core/geometry/depth_registration.h"
 #include "core/geometry/wcs.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 inline constexpr double kDefaultPointSigmaM = 0.01;   ///< of a surveyed coordinate
 inline constexpr double kDefaultPickedSigmaM = 0.02;  ///< of a position picked in the map
@@ -123,4 +123,4 @@ struct ObservedPoint {
 /// In the order in which the names come first.
 [[nodiscard]] std::vector<ObservedPoint> average_sightings(const std::vector<PointSighting>& sightings);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -4,13 +4,13 @@
 // From observations to points of the map. See control_points.h.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <optional>
 
+#include "tools/common/text_format.h"
 #include "tools/mapping/site/control_points.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 /// Squared distance from the mean over variance and degree of freedom, above which sightings contradict each other.
@@ -75,15 +75,12 @@ ObservedPoint average(const std::string& name, const std::vector<const PointSigh
 }  // namespace
 
 std::string describe(const ControlObservation& observation) {
-  char text[96];
   switch (observation.kind) {
     case ObservationKind::kMapPosition: return "map position of line " + std::to_string(observation.line);
     case ObservationKind::kLandmark: return "landmark " + std::to_string(observation.landmark);
     case ObservationKind::kPixel: break;
   }
-  std::snprintf(text, sizeof text, "pixel (%.1f, %.1f) of frame %llu", observation.u, observation.v,
-                static_cast<unsigned long long>(observation.frame));
-  return text;
+  return tools::text_of("pixel (%.1f, %.1f) of frame %llu", observation.u, observation.v, tools::llu(observation.frame));
 }
 
 Result<PixelMeasurement> measure_pixel(const ControlObservation& pixel, const RgbdCamera& camera, const DepthLookup& lookup,
@@ -155,4 +152,4 @@ std::vector<ObservedPoint> average_sightings(const std::vector<PointSighting>& s
   return points;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

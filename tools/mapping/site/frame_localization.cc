@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Only the frames that somebody picked pixels in are wanted, each with a few before it: the localizer may track into them.
 #include "tools/mapping/site/frame_localization.h"
 
 #include <optional>
@@ -9,7 +11,7 @@
 #include "drivers/frame_source.h"
 #include "tools/common/frame_reading.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::uint64_t kRunUpFrames = 10;
@@ -31,7 +33,7 @@ Result<PoseWithCovariance> pose_of(const Localization& localization) {
 }  // namespace
 
 Result<Frames> localize_frames(const MapView& map, const RgbdCamera& camera, const std::string& sequence_url,
-                               const std::vector<ControlObservation>& observations, const std::function<bool()>& should_stop) {
+                               const std::vector<ControlObservation>& observations, const WorkObserver& observer) {
   std::set<std::uint64_t> wanted;
   for (const ControlObservation& observation : observations) {
     if (observation.kind == ObservationKind::kPixel) wanted.insert(observation.frame);
@@ -56,10 +58,10 @@ Result<Frames> localize_frames(const MapView& map, const RgbdCamera& camera, con
     }
     return Status::ok();
   };
-  const auto counts = tools::read_frames(*source.value(), localize, should_stop);
+  const auto counts = tools::read_frames(*source.value(), localize, observer);
   if (!counts) return counts.status();
-  if (should_stop()) return Status(ErrorCode::kIo, "interrupted; nothing was written");
+  if (observer.should_stop()) return Status(ErrorCode::kIo, "interrupted; nothing was written");
   return frames;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -5,16 +5,16 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/base/work_observer.h"
 #include "core/map/map_view.h"
 #include "tools/mapping/site/control_points.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 /// What one frame had to say. Errors are reasons for people.
 struct LocalizedFrame {
@@ -23,10 +23,11 @@ struct LocalizedFrame {
 };
 
 /// Localizes the frames that `observations` have pixels in. A few frames before each are run through the localizer too, so
-/// that it may track. Errors are those of opening the recording, and kInvalid where its images are not the camera's.
+/// that it may track. Errors are those of opening the recording, kInvalid where its images are not the camera's, kIo where `observer` wants
+/// to stop.
 [[nodiscard]] Result<std::map<std::uint64_t, LocalizedFrame>> localize_frames(const MapView& map, const RgbdCamera& camera,
                                                                               const std::string& sequence_url,
                                                                               const std::vector<ControlObservation>& observations,
-                                                                              const std::function<bool()>& should_stop);
+                                                                              const WorkObserver& observer);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -13,7 +13,7 @@
 #include "tools/mapping/site/axis_check.h"
 #include "tools/mapping/site/consensus.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 using tools::degrees;
@@ -231,4 +231,4 @@ GeorefFit fit_georef(std::vector<GeorefPoint> points, const GeorefOptions& optio
   return fit;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -13,7 +13,7 @@
 #include "core/geometry/wcs.h"
 #include "tools/mapping/site/control_points.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 enum class PointVerdict {
   kGood,
@@ -60,4 +60,4 @@ struct GeorefFit {
 
 [[nodiscard]] GeorefFit fit_georef(std::vector<GeorefPoint> points, const GeorefOptions& options);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -4,16 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "tools/common/json_text.h"
 #include "tools/common/text_format.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using tools::append_text;
 using tools::degrees;
+using tools::Json;
+using tools::json_of;
 
 constexpr std::size_t kMaxNameColumns = 24;
 
@@ -90,19 +91,17 @@ void append_line(const char* label, const std::string& content, std::string* tex
     *text += std::string(label) + std::string(14 - std::min<std::size_t>(13, std::string(label).size()), ' ') + content + "\n";
 }
 
-Json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
 Json point_json(const GeorefPoint& point) {
   Json json;
   json["name"] = point.name;
-  json["site_m"] = vector_json(point.pair.p_a);
-  json["map_m"] = vector_json(point.pair.p_b);
+  json["site_m"] = json_of(point.pair.p_a);
+  json["map_m"] = json_of(point.pair.p_b);
   json["sigma_m"] = point.pair.sigma_m;
   json["sightings"] = point.num_sightings;
   json["scatter_m"] = point.scatter_m;
-  json["residual_m"] = vector_json(point.residual_m);
+  json["residual_m"] = json_of(point.residual_m);
   if (point.left_out.is_determined) {
-    json["predicted_error_m"] = vector_json(point.left_out.error_m);
+    json["predicted_error_m"] = json_of(point.left_out.error_m);
     json["predicted_error_sigmas"] = point.left_out.sigmas();
   }
   json["verdict"] = to_string(point.verdict);
@@ -110,13 +109,7 @@ Json point_json(const GeorefPoint& point) {
 }
 
 Json fit_json(const GeorefFit& fit) {
-  const Eigen::Quaterniond& q = fit.datum.T_wcs_map.rotation;
-  Json covariance = Json::array();
-  for (int row = 0; row < 6; ++row) {
-    Json values = Json::array();
-    for (int column = 0; column < 6; ++column) values.push_back(fit.datum.covariance(row, column));
-    covariance.push_back(values);
-  }
+  const Rigid3& T_wcs_map = fit.datum.T_wcs_map;
   const DatumSigmas sigmas = sigmas_of(fit);
   return {{"rms_m", fit.rigid.rms_m},
           {"rms_predicted_m", fit.rms_leave_one_out_m},
@@ -125,8 +118,8 @@ Json fit_json(const GeorefFit& fit) {
           {"covariance_factor", fit.covariance_factor},
           {"sigma_m", sigmas.position_m},
           {"sigma_deg", degrees(sigmas.turn_rad)},
-          {"T_wcs_map", {{"position_m", vector_json(fit.datum.T_wcs_map.translation)}, {"orientation_wxyz", {q.w(), q.x(), q.y(), q.z()}}}},
-          {"covariance", covariance}};
+          {"T_wcs_map", {{"position_m", json_of(T_wcs_map.translation)}, {"orientation_wxyz", json_of(T_wcs_map.rotation)}}},
+          {"covariance", json_of(fit.datum.covariance)}};
 }
 
 }  // namespace
@@ -161,7 +154,7 @@ std::string format_json(const GeorefSummary& s) {
   json["warnings"] = s.fit.warnings;
   json["problem"] = s.fit.problem.empty() ? Json(nullptr) : Json(s.fit.problem);
   json["written"] = s.is_written ? Json(s.out_path) : Json(nullptr);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return tools::json_text(json);
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -9,7 +9,7 @@
 
 #include "tools/mapping/site/georef_fit.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 struct GeorefSummary {
   std::string map_path, points_path, observed_path, out_path;
@@ -23,4 +23,4 @@ struct GeorefSummary {
 [[nodiscard]] std::string format_table(const GeorefSummary& summary);
 [[nodiscard]] std::string format_json(const GeorefSummary& summary);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -6,15 +6,16 @@
 #include <algorithm>
 #include <optional>
 
-namespace camloc::map_tool {
+#include "core/base/order_statistics.h"
+#include "tools/common/map_points.h"
+
+namespace camloc::mapping {
 namespace {
 
 double extent_along(int axis, const std::vector<Eigen::Vector3d>& landmarks, const MapView& map) {
   std::vector<double> values;
   for (const Eigen::Vector3d& p : landmarks) values.push_back(p[axis]);
-  std::sort(values.begin(), values.end());
-  const std::size_t tail = values.size() / 100;
-  double low = values.empty() ? 0 : values[tail], high = values.empty() ? 0 : values[values.size() - 1 - tail];
+  auto [low, high] = trimmed_range(std::move(values), 100);
   for (std::uint32_t k = 0; k < map.keyframes().size(); ++k) {
     const double value = map.keyframe_pose(k).translation[axis];
     low = std::min(low, value);
@@ -24,7 +25,7 @@ double extent_along(int axis, const std::vector<Eigen::Vector3d>& landmarks, con
 }
 
 Eigen::Vector3d flattest_axis(const MapView& map) {
-  const std::vector<Eigen::Vector3d> landmarks = landmark_positions(map);
+  const std::vector<Eigen::Vector3d> landmarks = tools::landmark_positions(map);
   int flat = 0;
   double smallest = extent_along(0, landmarks, map);
   for (int axis = 1; axis < 3; ++axis) {
@@ -57,13 +58,6 @@ std::optional<Eigen::Vector3d> upright_axis(const MapView& map) {
 
 }  // namespace
 
-std::vector<Eigen::Vector3d> landmark_positions(const MapView& map) {
-  std::vector<Eigen::Vector3d> points;
-  points.reserve(map.landmarks().size());
-  map.for_each_position([&](const auto&, const Eigen::Vector3f& position_m) { points.push_back(position_m.cast<double>()); });
-  return points;
-}
-
 Eigen::Vector3d up_axis(const MapView& map) {
   if (map.info().wcs) return map.info().wcs->T_wcs_map.rotation.conjugate() * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d axis = upright_axis(map).value_or(flattest_axis(map));
@@ -73,4 +67,4 @@ Eigen::Vector3d up_axis(const MapView& map) {
   return image_top < 0 ? Eigen::Vector3d(-axis) : axis;
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

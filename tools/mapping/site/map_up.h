@@ -5,11 +5,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "core/map/map_view.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 /// Unit vector in `map`, pointing to the side to which the keyframes' image tops point on average. The z axis of the site where the map
 /// has a datum; else what the keyframes' horizontal axes are perpendicular to (Snavely, Seitz, Szeliski, "Photo tourism", 2006),
@@ -17,7 +16,4 @@ namespace camloc::map_tool {
 /// landmarks (1st to 99th percentile) and keyframes extend least, which is what `camloc localize` draws along.
 [[nodiscard]] Eigen::Vector3d up_axis(const MapView& map);
 
-/// All landmarks of a map, metres in `map`.
-[[nodiscard]] std::vector<Eigen::Vector3d> landmark_positions(const MapView& map);
-
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

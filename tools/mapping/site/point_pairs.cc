@@ -8,7 +8,7 @@
 #include "core/io/file_bytes.h"
 #include "core/io/text.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 namespace {
 
 constexpr std::size_t kMaxFileBytes = std::size_t{16} << 20;
@@ -52,4 +52,4 @@ Result<std::vector<ControlPair>> read_point_pairs(const std::string& path) {
   return parse_point_pairs(text.value(), path);
 }
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

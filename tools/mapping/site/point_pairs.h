@@ -12,7 +12,7 @@
 
 #include "core/base/result.h"
 
-namespace camloc::map_tool {
+namespace camloc::mapping {
 
 struct ControlPair {
   std::string name;
@@ -25,4 +25,4 @@ struct ControlPair {
 [[nodiscard]] Result<std::vector<ControlPair>> parse_point_pairs(std::string_view text, const std::string& path);
 [[nodiscard]] Result<std::vector<ControlPair>> read_point_pairs(const std::string& path);
 
-}  // namespace camloc::map_tool
+}  // namespace camloc::mapping

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// The first pass over a recording: its log, what it counts, and being interrupted.
+#include "tools/mapping/build/walk_tracking.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/base/recording_observer.h"
+#include "tests/drivers/test_folder.h"
+#include "tests/mapping/recorded_room.h"
+#include "tools/mapping/build/view_log.h"
+
+namespace camloc::mapping {
+namespace {
+
+WalkRequest request_for(const TestFolder& folder) {
+  WalkRequest request;
+  request.url = "replay://" + (folder / "walk");
+  request.camera = room_camera();
+  request.slam = room_options();
+  request.log_path = folder / "log";
+  return request;
+}
+
+Result<WalkEnd> track(const WalkRequest& request, SlamCounts* counts = nullptr, WorkObserver& observer = WorkObserver::nobody()) {
+  Slam slam(request.camera, request.slam);
+  WalkCheck check(request.camera);
+  auto end = track_walk(request, &slam, &check, observer);
+  if (counts != nullptr) *counts = slam.counts();
+  return end;
+}
+
+TEST(WalkTracking, EveryViewIsTrackedAndLogged) {
+  const TestFolder folder;
+  record_room(folder / "walk", 12);
+  const WalkRequest request = request_for(folder);
+  SlamCounts counts;
+  testing::RecordingObserver observer;
+  const auto end = track(request, &counts, observer);
+  ASSERT_TRUE(end.is_ok()) << end.status().message();
+  EXPECT_FALSE(end->is_interrupted);
+  EXPECT_EQ(observer.count("frame"), 12U);
+  EXPECT_TRUE(observer.is_monotone());
+  EXPECT_NE(observer.steps.back().note.find(std::to_string(counts.num_keyframes) + " keyframes"), std::string::npos);
+  EXPECT_EQ(counts.num_views, 12U);
+  EXPECT_EQ(counts.num_lost, 0U);
+  EXPECT_EQ(end->surfaces.size(), counts.num_keyframes);
+  auto reader = ViewLogReader::open(request.log_path, walk_identity(request));
+  ASSERT_TRUE(reader.is_ok());
+  LoggedView view;
+  for (std::uint64_t frame = 0; frame < 12; ++frame) {
+    ASSERT_TRUE(reader->next(&view).is_ok());
+    EXPECT_EQ(view.frame, frame);
+    EXPECT_GE(view.view.size(), 100U);
+    EXPECT_FALSE(view.surface_m.empty());
+  }
+  EXPECT_EQ(reader->next(&view).code(), ErrorCode::kEnd);
+}
+
+TEST(WalkTracking, ResumingAWholeLogReadsNoFrameAgain) {
+  const TestFolder folder;
+  record_room(folder / "walk", 12);
+  WalkRequest request = request_for(folder);
+  SlamCounts first, again;
+  ASSERT_TRUE(track(request, &first).is_ok());
+  const auto log = bytes_of(request.log_path);
+  request.is_resumed = true;
+  const auto end = track(request, &again);
+  ASSERT_TRUE(end.is_ok()) << end.status().message();
+  EXPECT_EQ(end->num_resumed, 12U);
+  EXPECT_EQ(again.num_views, 12U);
+  EXPECT_EQ(again.num_keyframes, first.num_keyframes);
+  EXPECT_EQ(again.num_landmarks, first.num_landmarks);
+  EXPECT_EQ(bytes_of(request.log_path), log);
+}
+
+TEST(WalkTracking, AnInterruptWhileTheLogIsReadKeepsTheLog) {
+  const TestFolder folder;
+  record_room(folder / "walk", 12);
+  WalkRequest request = request_for(folder);
+  ASSERT_TRUE(track(request).is_ok());
+  const auto log = bytes_of(request.log_path);
+  request.is_resumed = true;
+  testing::RecordingObserver stops_at_once(0);
+  const auto end = track(request, nullptr, stops_at_once);
+  ASSERT_TRUE(end.is_ok());
+  EXPECT_TRUE(end->is_interrupted);
+  EXPECT_EQ(bytes_of(request.log_path), log);
+}
+
+TEST(WalkTracking, FramesOfAnotherSizeEndItAndLeaveNoLog) {
+  const TestFolder folder;
+  record_room(folder / "walk", 6, [](std::uint64_t, FrameBuffer* buffer) { buffer->gray.resize(160, 120); });
+  const auto end = track(request_for(folder));
+  ASSERT_FALSE(end.is_ok());
+  EXPECT_EQ(end.status().code(), ErrorCode::kInvalid);
+  EXPECT_NE(end.status().message().find("160x120"), std::string::npos) << end.status().message();
+  EXPECT_FALSE(std::filesystem::exists(folder / "log"));
+}
+
+TEST(WalkTracking, TheIdentityChangesWithRecordingCameraAndFeatures) {
+  const TestFolder folder;
+  const WalkRequest request = request_for(folder);
+  const std::uint64_t identity = walk_identity(request);
+  EXPECT_EQ(walk_identity(request), identity);
+  WalkRequest other = request;
+  other.url += "?frames=0:10:1";
+  EXPECT_NE(walk_identity(other), identity);
+  other = request;
+  other.camera.depth.fx += 0.5;
+  other.camera.color.fx += 0.5;
+  EXPECT_NE(walk_identity(other), identity);
+  other = request;
+  other.orb.num_features += 1;
+  EXPECT_NE(walk_identity(other), identity);
+  // Where the log lies does not matter.
+  other = request;
+  other.log_path = "elsewhere";
+  EXPECT_EQ(walk_identity(other), identity);
+}
+
+}  // namespace
+}  // namespace camloc::mapping

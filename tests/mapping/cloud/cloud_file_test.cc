@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/mapping/cloud/cloud_file.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/mapping/cloud_bytes.h"
+
+namespace camloc::mapping {
+namespace {
+
+TEST(CloudFile, CountsWhatIsNotFinite) {
+  const auto cloud = read("1 2 3\nnan nan nan\n4 inf 6\n7 8 9\n", "a.xyz");
+  expect_points(cloud, {{1, 2, 3}, {7, 8, 9}});
+  EXPECT_EQ(cloud.value().num_read, 4U);
+  EXPECT_EQ(cloud.value().num_invalid, 2U);
+  expect_error(read("nan nan nan\nnan nan nan\n", "a.xyz"), ErrorCode::kInvalid, "none of its 2 points");
+}
+
+TEST(CloudFile, SaysHowToConvertWhatItDoesNotRead) {
+  expect_error(read("ASTM-E57 and so on", "a.e57"), ErrorCode::kUnsupported, "CloudCompare");
+  expect_error(read("LASF and so on", "a.laz"), ErrorCode::kUnsupported, "pdal");
+  expect_error(read(std::string("\x89PNG\0\1\2", 7), "a.png"), ErrorCode::kUnsupported, "PLY, PCD, LAS");
+  expect_error(read("", "a.ply"), ErrorCode::kInvalid, "empty");
+  expect_error(read_cloud("/no/such/file.ply", {}), ErrorCode::kNotFound, "no such file");
+  expect_error(read_cloud("/", {}), ErrorCode::kInvalid, "folder");
+}
+
+TEST(CloudFile, TakesUnits) {
+  CloudOptions options;
+  options.unit_m = 0.001;
+  const auto cloud = read("1500 -2250 500\n2000 4000 8000\n", "a.xyz", options);
+  expect_points(cloud, {{1.5, -2.25, 0.5}, {2, 4, 8}});
+}
+
+}  // namespace
+}  // namespace camloc::mapping

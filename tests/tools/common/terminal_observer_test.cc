@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// What an observer shows on a terminal (a pseudo terminal here), and how it is stopped.
+#include "tools/common/terminal_observer.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <pty.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <string>
+
+namespace camloc::tools {
+namespace {
+
+/// What is written to stderr while this lives, as a terminal gets it.
+class Terminal {
+ public:
+  Terminal() {
+    int slave = -1;
+    EXPECT_EQ(::openpty(&master_, &slave, nullptr, nullptr, nullptr), 0);
+    old_ = ::dup(STDERR_FILENO);
+    ::dup2(slave, STDERR_FILENO);
+    ::close(slave);
+    ::fcntl(master_, F_SETFL, O_NONBLOCK);
+  }
+  ~Terminal() {
+    ::dup2(old_, STDERR_FILENO);
+    ::close(old_);
+    ::close(master_);
+  }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+  std::string text() const {
+    char bytes[4096];
+    const ssize_t count = ::read(master_, bytes, sizeof bytes);
+    return {bytes, static_cast<std::size_t>(std::max<ssize_t>(0, count))};
+  }
+
+ private:
+  int master_ = -1, old_ = -1;
+};
+
+TEST(TerminalObserverTest, CountsHaveABarAndStagesAText) {
+  const Terminal terminal;
+  std::string text;
+  {
+    TerminalObserver observer;
+    EXPECT_TRUE(observer.on_progress("frame", 4, 4, "3 localized"));
+    text = terminal.text();
+    EXPECT_NE(text.find("[########################] frame 4/4  3 localized"), std::string::npos) << text;
+    EXPECT_TRUE(observer.on_progress("frame", 12));
+    EXPECT_NE(terminal.text().find("frame 12"), std::string::npos);
+    EXPECT_TRUE(observer.on_progress("adjusting ..."));
+    text = terminal.text();
+    EXPECT_EQ(text.substr(text.size() - 13), "adjusting ...") << text;
+  }
+  text = terminal.text();
+  EXPECT_EQ(text, "\r\x1b[K") << "the line is cleared";
+}
+
+TEST(TerminalObserverTest, WithoutATerminalItIsSilent) {
+  ::testing::internal::CaptureStderr();
+  {
+    TerminalObserver observer;
+    EXPECT_TRUE(observer.on_progress("frame", 4, 4));
+    EXPECT_TRUE(observer.on_progress("adjusting ..."));
+  }
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(TerminalObserverTest, ASignalIsTheWishToStop) {
+  TerminalObserver observer;
+  EXPECT_FALSE(observer.should_stop());
+  std::raise(SIGINT);
+  EXPECT_TRUE(observer.should_stop());
+  EXPECT_FALSE(observer.on_progress("frame", 1, 9));
+}
+
+}  // namespace
+}  // namespace camloc::tools
