@@ -128,7 +128,19 @@ std::vector<V4l2DeviceInfo> list_v4l2_devices(V4l2Io& io, const V4l2Folders& fol
   return nodes;
 }
 
-std::vector<V4l2DeviceInfo> list_v4l2_devices() { return list_v4l2_devices(*make_system_v4l2_io(), {}); }
+CameraListing list_v4l2_cameras(V4l2Io& io, const V4l2Folders& folders) {
+  CameraListing listing{
+      {}, folders.sys + "/class/video4linux", "", "plug it in, then 'ls -l /dev/v4l/by-id'; the nodes belong to the group video"};
+  for (const V4l2DeviceInfo& device : list_v4l2_devices(io, folders)) {
+    listing.cameras.push_back({"v4l2://" + (device.serial.empty() ? device.path : "serial:" + device.serial), device.name,
+                               device.path + (device.bus.empty() ? "" : ", " + device.bus), device.problem});
+  }
+  return listing;
+}
+
+CameraListing list_v4l2_cameras(const SystemFolders& folders) {
+  return list_v4l2_cameras(*make_system_v4l2_io(), {folders.path("/dev"), folders.path("/sys")});
+}
 
 Result<std::string> find_v4l2_node(V4l2Io& io, const V4l2Folders& folders, const std::string& serial, V4l2Role role) {
   const V4l2DeviceInfo* best = nullptr;

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "drivers/camera_listing.h"
+#include "drivers/usb_devices.h"
 #include "drivers/v4l2/v4l2_device.h"
 #include "drivers/v4l2/v4l2_pixel_format.h"
 
@@ -34,8 +36,11 @@ struct V4l2DeviceInfo {
 
 /// Every node that gives images, in the order of their numbers, and those that could not be asked (with `problem`). Nodes for
 /// metadata or output are left out. A camera in use is listed, too.
-[[nodiscard]] std::vector<V4l2DeviceInfo> list_v4l2_devices();
 [[nodiscard]] std::vector<V4l2DeviceInfo> list_v4l2_devices(V4l2Io& io, const V4l2Folders& folders);
+
+/// The same for people. A device with a serial is named by it, whichever node it gets.
+[[nodiscard]] CameraListing list_v4l2_cameras(V4l2Io& io, const V4l2Folders& folders);
+[[nodiscard]] CameraListing list_v4l2_cameras(const SystemFolders& folders);
 
 /// What /sys says about the node `path`, which may be a link: `path` as /dev/videoN, serial, by_id, usb_node.
 [[nodiscard]] V4l2DeviceInfo describe_v4l2_node(const std::string& path, const V4l2Folders& folders);

@@ -16,8 +16,8 @@
 #include <deque>
 #include <thread>
 
-#include "drivers/frame_source.h"
 #include "drivers/sample_source.h"
+#include "drivers/sources.h"
 #include "tests/daemon/process_allocations.h"
 #include "tests/daemon/sample_map.h"
 #include "tests/daemon/test_folder.h"

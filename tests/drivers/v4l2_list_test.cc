@@ -75,6 +75,18 @@ TEST_F(V4l2List, NodesThatCannotBeOpenedSayWhy) {
 
 TEST_F(V4l2List, NothingThere) { EXPECT_TRUE(list_v4l2_devices(io_, {folder_ / "none", folder_ / "none"}).empty()); }
 
+TEST_F(V4l2List, CamerasForPeople) {
+  io_.node(node("video4")).faults.is_gone = true;
+  const CameraListing listing = list_v4l2_cameras(io_, folders_);
+  ASSERT_EQ(listing.cameras.size(), 4U);
+  EXPECT_EQ(listing.cameras[0].url, "v4l2://serial:ABC123");
+  EXPECT_EQ(listing.cameras[0].where.rfind(node("video0"), 0), 0U) << listing.cameras[0].where;
+  EXPECT_EQ(listing.cameras[0].problem, "");
+  EXPECT_EQ(listing.cameras[2].url, "v4l2://" + node("video4")) << "no serial";
+  EXPECT_NE(listing.cameras[2].problem.find("No such device"), std::string::npos);
+  EXPECT_TRUE(list_v4l2_cameras(SystemFolders{"/no/such/root"}).cameras.empty());
+}
+
 TEST_F(V4l2List, SerialAndRoleFindANode) {
   EXPECT_EQ(*find_v4l2_node(io_, folders_, "ABC123", V4l2Role::kImage), node("video10")) << "colour before infrared";
   EXPECT_EQ(*find_v4l2_node(io_, folders_, "ABC123", V4l2Role::kDepth), node("video0")) << "Z16 before Y16";

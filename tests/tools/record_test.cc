@@ -9,8 +9,8 @@
 
 #include "core/io/accelerometer.h"
 #include "core/io/sequence.h"
-#include "drivers/frame_source.h"
 #include "drivers/sample_source.h"
+#include "drivers/sources.h"
 #include "tests/tools/command_runner.h"
 #include "tools/camloc/commands.h"
 #include "tools/recording/recorder.h"

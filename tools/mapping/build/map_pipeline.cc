@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "core/map/map_writer.h"
+#include "drivers/sources.h"
 #include "tools/common/frame_reading.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/progress_line.h"

@@ -8,7 +8,7 @@
 #include <unordered_map>
 
 #include "core/io/accelerometer.h"
-#include "drivers/frame_source.h"
+#include "drivers/sources.h"
 #include "tools/common/frame_reading.h"
 
 namespace camloc::map_tool {

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "core/io/camera_file.h"
+#include "drivers/sources.h"
 #include "tools/common/interrupt.h"
 #include "tools/common/progress_line.h"
 #include "tools/mapping/build/surface_sample.h"

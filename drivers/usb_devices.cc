@@ -2,19 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The files are those of the Linux kernel's Documentation/ABI/stable/sysfs-bus-usb.
-#include "tools/doctor/usb_devices.h"
+#include "drivers/usb_devices.h"
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <tuple>
 
 #include "core/io/text.h"
-#include "tools/common/text_format.h"
 
-namespace camloc::tools {
+namespace camloc {
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,32 +68,23 @@ std::optional<UsbDevice> read_device(const fs::path& folder) {
   return device;
 }
 
-bool is_placeholder(const std::string& serial) { return serial.find_first_not_of('0') == std::string::npos; }
-
 }  // namespace
 
-std::string UsbDevice::node() const { return text_of("/dev/bus/usb/%03d/%03d", bus, address); }
-std::string UsbDevice::usb_id() const { return text_of("%04x:%04x", unsigned{vendor}, unsigned{product}); }
+std::string UsbDevice::node() const {
+  char text[48];
+  std::snprintf(text, sizeof(text), "/dev/bus/usb/%03d/%03d", bus, address);
+  return text;
+}
+
+std::string UsbDevice::usb_id() const {
+  char text[16];
+  std::snprintf(text, sizeof(text), "%04x:%04x", unsigned{vendor}, unsigned{product});
+  return text;
+}
 
 std::string UsbDevice::hub() const {
   const std::size_t last = name.find_last_of(".-");
   return last == std::string::npos ? "" : name.substr(0, last);
-}
-
-UsbRole role_of(const UsbDevice& device) {
-  constexpr std::uint16_t kMicrosoft = 0x045e, kPrimeSense = 0x1d27, kOrbbec = 0x2bc5;
-  if (device.vendor == kPrimeSense || device.vendor == kOrbbec) return UsbRole::kOpenni2Camera;
-  if (device.vendor != kMicrosoft) return UsbRole::kNone;
-  switch (device.product) {
-    case 0x02ae:
-    case 0x02bf: return UsbRole::kKinectCamera;
-    case 0x02b0: return UsbRole::kKinectMotor;
-    case 0x02ad:
-    case 0x02be:
-    case 0x02c3:
-    case 0x02bb: return UsbRole::kKinectAudio;
-    default: return UsbRole::kNone;
-  }
 }
 
 std::vector<UsbDevice> list_usb_devices(const SystemFolders& folders) {
@@ -108,12 +99,4 @@ std::vector<UsbDevice> list_usb_devices(const SystemFolders& folders) {
   return devices;
 }
 
-std::string kinect_serial(const UsbDevice& camera, const std::vector<UsbDevice>& devices) {
-  if (!is_placeholder(camera.serial)) return camera.serial;
-  for (const UsbDevice& device : devices) {
-    if (role_of(device) == UsbRole::kKinectAudio && device.hub() == camera.hub() && !is_placeholder(device.serial)) return device.serial;
-  }
-  return "";
-}
-
-}  // namespace camloc::tools
+}  // namespace camloc

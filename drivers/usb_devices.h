@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What is on USB, by what the kernel says in /sys: nothing is opened. For `camloc camera list` and `camloc doctor`.
+// What is on USB, by what the kernel says in /sys: nothing is opened.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-namespace camloc::tools {
+namespace camloc {
 
 /// Where the trees of the kernel and of udev are; tests have their own.
 struct SystemFolders {
@@ -30,14 +30,18 @@ struct UsbDevice {
   [[nodiscard]] std::string hub() const;     ///< name of what it is plugged into
 };
 
-enum class UsbRole { kNone, kKinectCamera, kKinectMotor, kKinectAudio, kOpenni2Camera };
-/// By vendor and product alone, as in 60-camloc.rules.
-[[nodiscard]] UsbRole role_of(const UsbDevice& device);
+/// Devices that a source opens over USB, as in 60-camloc.rules.
+struct UsbId {
+  std::uint16_t vendor = 0;
+  std::uint16_t product = 0;  ///< 0: all of the vendor's
+  bool is_camera = true;      ///< false: a part beside the camera, which gives no images
+
+  [[nodiscard]] bool matches(const UsbDevice& device) const {
+    return device.vendor == vendor && (product == 0 || device.product == product);
+  }
+};
 
 /// In the order of bus and address; hubs are among them. Empty where there is no USB.
 [[nodiscard]] std::vector<UsbDevice> list_usb_devices(const SystemFolders& folders = {});
 
-/// The device's own serial number or, of a Kinect model 1473, that of the audio device in the same housing.
-[[nodiscard]] std::string kinect_serial(const UsbDevice& camera, const std::vector<UsbDevice>& devices);
-
-}  // namespace camloc::tools
+}  // namespace camloc
