@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "camloc/status_t.hpp"
 #include "core/base/result.h"
+#include "daemon/pose_report.h"
 
 namespace camloc {
 
@@ -21,8 +21,8 @@ enum class ControlCommand : std::uint8_t { kStatus, kReload, kReset };
 
 /// {"ok":true} / {"ok":false,"error":"..."}, without a line feed.
 [[nodiscard]] std::string control_reply(const Status& status);
-/// {"ok":true,"state":"LOCALIZED",...}: every field of status_t under its name; map_id as text in hexadecimal, because
+/// {"ok":true,"state":"LOCALIZED",...}: every field under the name it has in status_t; map_id as text in hexadecimal, because
 /// JSON numbers lose the low bits of 64-bit integers.
-[[nodiscard]] std::string control_reply(const status_t& status);
+[[nodiscard]] std::string control_reply(const DaemonStatus& status);
 
 }  // namespace camloc

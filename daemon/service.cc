@@ -52,10 +52,7 @@ void drain(int fd) {
 }  // namespace
 
 Service::Service(ServiceInputs inputs)
-    : in_(std::move(inputs)),
-      log_(in_.config.parsed_log_level()),
-      board_(in_.config.source_url, in_.config.map_path, monotonic_ns()),
-      publisher_(publish_options(in_.config)) {
+    : in_(std::move(inputs)), log_(in_.config.parsed_log_level()), board_(in_.config.source_url, in_.config.map_path, monotonic_ns()) {
   no_map_.state = State::kNoMap;
   board_.set_state(State::kNoCamera, in_.config.source_url.empty() ? "source.url is not set" : "opening the source");
 }
@@ -63,6 +60,9 @@ Service::Service(ServiceInputs inputs)
 Service::~Service() = default;
 
 Status Service::start() {
+  Result<std::unique_ptr<PoseSink>> sink = open_pose_sink(sink_options(in_.config), in_.sinks);
+  if (!sink) return sink.status().with_context("publish.lcm_url");
+  sink_ = std::move(sink).value();
   if (!in_.config.control_socket.empty()) {
     Result<std::unique_ptr<ControlSocket>> control = ControlSocket::open(in_.config.control_socket);
     if (!control) return control.status();
@@ -247,8 +247,7 @@ void Service::on_frame(const CapturedFrame& captured) {
     context.map_id = map_.info().map_id;
     if (in_.config.publish_frame == "wcs") context.datum = &*map_.info().wcs;
   }
-  publisher_.publish(localization, context);
-  board_.counters().poses_published = static_cast<std::int64_t>(publisher_.num_poses_published());
+  if (sink_->publish(make_pose_report(localization, context))) ++board_.counters().poses_published;
 
   ++num_processed_;
   last_frame_ns_ = monotonic_ns();
@@ -291,7 +290,7 @@ void Service::report_state(const Localization& localization) {
 
 void Service::report_calibration() {
   const CalibrationHealth& health = map_.localizer().calibration();
-  const bool was_suspect = board_.get().is_calibration_suspect != 0;
+  const bool was_suspect = board_.get().is_calibration_suspect;
   board_.set_calibration(health);
   if (health.is_suspect == was_suspect) return;
   if (health.is_suspect) {
@@ -309,8 +308,8 @@ void Service::set_state(State state, const char* text) {
 }
 
 void Service::connect() {
-  if (publisher_.is_connected()) return;
-  const Status status = publisher_.connect();
+  if (sink_->is_connected()) return;
+  const Status status = sink_->connect();
   if (status) {
     log_.info("publishing on %s", in_.config.publish_lcm_url.c_str());
     route_trouble_.clear();
@@ -322,12 +321,12 @@ void Service::connect() {
 void Service::publish_status() {
   refresh_counters();
   board_.stamp(monotonic_ns(), realtime_ns());
-  publisher_.publish(board_.get());
+  sink_->publish(board_.get());
 }
 
 // What the capture thread counts, as of now: between two messages the control socket asks, too.
 void Service::refresh_counters() {
-  status_t& counters = board_.counters();
+  DaemonStatus& counters = board_.counters();
   if (capture_) board_.set_capture(capture_->counts(), capture_->health(), capture_->mailbox().num_dropped());
   counters.reset_counter = std::int64_t{reset_offset_} + num_resets_;
 }

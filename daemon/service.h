@@ -20,8 +20,8 @@
 #include "daemon/control_socket.h"
 #include "daemon/log.h"
 #include "daemon/map_slot.h"
-#include "daemon/pose_publisher.h"
 #include "daemon/sd_notify.h"
+#include "daemon/sinks/sinks.h"
 #include "daemon/status_board.h"
 
 namespace camloc {
@@ -31,6 +31,7 @@ struct ServiceInputs {
   std::optional<RgbdCamera> camera;               ///< of source.camera
   std::function<Result<Config>()> reload_config;  ///< reads the configuration anew
   OpenSource open_source;                         ///< open_frame_source, or a test's own
+  SinkTable sinks = pose_sinks();
 };
 
 class Service {
@@ -39,7 +40,7 @@ class Service {
   ~Service();
 
   /// Takes the control socket, guards against truncated maps, blocks the signals it handles, starts the capture thread.
-  /// Errors: those of ControlSocket. A missing camera, map or network is none.
+  /// Errors: those of ControlSocket and of the sink's configuration. A missing camera, map or network is none.
   [[nodiscard]] Status start();
   /// Runs until there is an exit code: 0 asked to stop or, if so configured, recording over; 2 configuration.
   [[nodiscard]] int run();
@@ -48,7 +49,7 @@ class Service {
   /// Ends the capture thread, gives the control socket back. False when the source hangs: see CaptureThread::stop().
   [[nodiscard]] bool stop();
 
-  [[nodiscard]] const status_t& status() const { return board_.get(); }
+  [[nodiscard]] const DaemonStatus& status() const { return board_.get(); }
   [[nodiscard]] std::optional<int> exit_code() const { return exit_code_; }
 
  private:
@@ -88,7 +89,7 @@ class Service {
   Notifier notifier_;
   ProgressWatch progress_;
   StatusBoard board_;
-  PosePublisher publisher_;
+  std::unique_ptr<PoseSink> sink_;
   MapSlot map_;
   UniqueFd signal_fd_, wake_fd_, timer_fd_;
   std::unique_ptr<ControlSocket> control_;

@@ -46,14 +46,12 @@ MapSlotOptions map_slot_options(const Config& config) {
   return options;
 }
 
-PublishOptions publish_options(const Config& config) {
+SinkOptions sink_options(const Config& config) {
   return {config.publish_lcm_url, config.publish_pose_channel, config.publish_status_channel, config.publish_bot_core_channel};
 }
 
-Status check_settings(const Config& config, SourceTable sources) {
-  if (config.publish_lcm_url.find("://") == std::string::npos) {
-    return {ErrorCode::kInvalid, "publish.lcm_url: '" + config.publish_lcm_url + "' has no provider; e.g. udpm://239.255.76.67:7667?ttl=0"};
-  }
+Status check_settings(const Config& config, SourceTable sources, SinkTable sinks) {
+  if (const Status status = find_sink(config.publish_lcm_url, sinks).status(); !status) return status.with_context("publish.lcm_url");
   if (config.source_url.empty()) return Status::ok();
   const Result<const SourceEntry*> source = find_source(config.source_url, sources);
   return source ? Status::ok() : Status(ErrorCode::kInvalid, "source.url: " + source.status().message());
@@ -76,8 +74,8 @@ Result<RgbdCamera> match_camera(const Config& config, const std::optional<RgbdCa
   return *camera;
 }
 
-Status check_config(const Config& config, SourceTable sources) {
-  if (const Status status = check_settings(config, sources); !status) return status;
+Status check_config(const Config& config, SourceTable sources, SinkTable sinks) {
+  if (const Status status = check_settings(config, sources, sinks); !status) return status;
   const Result<std::optional<RgbdCamera>> camera = read_configured_camera(config);
   if (!camera) return camera.status();
   if (config.source_url.empty() || !(*find_source(config.source_url, sources))->is_recording) return Status::ok();

@@ -44,7 +44,7 @@ TEST(ServiceSetupTest, OptionsFollowTheConfig) {
   EXPECT_FALSE(map.localizer.use_tracking);
   EXPECT_EQ(map.localizer.max_coast_ns, 70'000'000);
   EXPECT_TRUE(map.needs_datum);
-  EXPECT_EQ(publish_options(config).bot_core_channel, "B");
+  EXPECT_EQ(sink_options(config).bot_core_channel, "B");
 }
 
 TEST(ServiceSetupTest, UnknownSchemeIsAConfigurationError) {
@@ -59,8 +59,12 @@ TEST(ServiceSetupTest, UnknownSchemeIsAConfigurationError) {
 
 TEST(ServiceSetupTest, LcmUrlNeedsAProvider) {
   Config config;
-  config.publish_lcm_url = "239.255.76.67";
-  EXPECT_FALSE(check_settings(config));
+  for (const char* url : {"239.255.76.67", "nonsense://x", "://"}) {
+    config.publish_lcm_url = url;
+    const Status status = check_settings(config);
+    EXPECT_EQ(status.code(), ErrorCode::kInvalid) << url;
+    EXPECT_NE(status.message().find("publish.lcm_url: '" + std::string(url) + "' has no provider"), std::string::npos) << status.message();
+  }
 }
 
 TEST(ServiceSetupTest, SourceOwnCalibrationIsUsed) {
