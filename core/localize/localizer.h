@@ -17,6 +17,7 @@
 #include "core/localize/motion_model.h"
 #include "core/localize/observations.h"
 #include "core/localize/pose_estimator.h"
+#include "core/localize/pose_hint.h"
 #include "core/localize/stage_timer.h"
 #include "core/localize/verification.h"
 #include "core/map/map_view.h"
@@ -38,6 +39,8 @@ class Localizer {
 
   /// The reference stays valid until the next call.
   const Localization& process(const Frame& frame);
+  /// A place to look first, in the frames that follow.
+  void hint(const PoseHint& hint) { hint_ = hint; }
   /// Forgets the last pose.
   void reset();
   [[nodiscard]] const CalibrationHealth& calibration() const { return calibration_.health(); }
@@ -77,6 +80,7 @@ class Localizer {
   CalibrationMonitor calibration_;
   VerificationOptions verification_;
   double focal_px_;
+  std::optional<PoseHint> hint_;
   Localization result_;
 };
 
