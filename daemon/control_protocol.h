@@ -9,15 +9,22 @@
 #include <string_view>
 
 #include "core/base/result.h"
+#include "core/localize/pose_hint.h"
 #include "daemon/pose_report.h"
 
 namespace camloc {
 
-enum class ControlCommand : std::uint8_t { kStatus, kReload, kReset };
+enum class ControlCommand : std::uint8_t { kStatus, kReload, kReset, kHint };
 
-/// One line without its line feed; a carriage return and blanks around the word are forgiven. kInvalid with the list of
-/// commands otherwise; its message quotes the bytes as they came.
-[[nodiscard]] Result<ControlCommand> parse_control_request(std::string_view line);
+struct ControlRequest {
+  ControlCommand command = ControlCommand::kStatus;
+  PoseHint hint;  ///< of kHint, valid
+};
+
+/// One line without its line feed: "status", "reload", "reset" or "hint X Y Z YAW_DEG RADIUS_M", all in the map. A carriage return
+/// and blanks around it are forgiven. kInvalid otherwise, with the list of commands or what a hint lacks; the message quotes the
+/// bytes as they came.
+[[nodiscard]] Result<ControlRequest> parse_control_request(std::string_view line);
 
 /// {"ok":true} / {"ok":false,"error":"..."}, without a line feed.
 [[nodiscard]] std::string control_reply(const Status& status);

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The loop itself, and the way of a frame through it. Map and reload are in service_map.cc.
+// The loop itself, and the way of a frame through it. Map and reload are in service_map.cc, what others ask for in
+// service_control.cc.
 #include "daemon/service.h"
 
 #include <signal.h>
@@ -79,6 +80,7 @@ Status Service::start() {
   if (!in_.config.source_url.empty()) {
     capture_ = std::make_unique<CaptureThread>(capture_options(in_.config), in_.open_source, wake_fd_.get());
   }
+  listen_for_hints();
   connect();
   log_.info("camlocd " CAMLOC_VERSION " started, source '%s', map %s", in_.config.source_url.c_str(), in_.config.map_path.c_str());
   notifier_.ready(board_.get().state_text.c_str());
@@ -93,20 +95,22 @@ int Service::run() {
 }
 
 void Service::step(int timeout_ms) {
-  constexpr int kOwnFds = 3;
+  constexpr int kOwnFds = 4;
   std::array<pollfd, kOwnFds + ControlSocket::kMaxPollFds> fds{};
   fds[0] = {signal_fd_.get(), POLLIN, 0};
   fds[1] = {wake_fd_.get(), POLLIN, 0};
   fds[2] = {timer_fd_.get(), POLLIN, 0};
+  fds[3] = {hint_listener_ ? hint_listener_->fd() : -1, POLLIN, 0};
   const std::span<pollfd> control_fds = std::span(fds).subspan(kOwnFds);
   const int num_control = control_ ? control_->prepare_poll(control_fds) : 0;
   if (::poll(fds.data(), static_cast<nfds_t>(kOwnFds + num_control), timeout_ms) <= 0) return;
   if (fds[0].revents != 0) on_signal();
   if (fds[1].revents != 0) on_wake();
   if (fds[2].revents != 0) on_tick();
+  if (fds[3].revents != 0) hint_listener_->handle(realtime_ns());
   if (num_control > 0) {
     control_->handle(control_fds.first(static_cast<std::size_t>(num_control)), monotonic_ns(),
-                     [this](ControlCommand command) { return on_control(command); });
+                     [this](const ControlRequest& request) { return on_control(request); });
   }
 }
 
@@ -157,21 +161,6 @@ void Service::on_tick() {
   board_.close_window(now_ns);
   publish_status();
   notifier_.status(board_.get().state_text.c_str());
-}
-
-std::string Service::on_control(ControlCommand command) {
-  switch (command) {
-    case ControlCommand::kStatus: break;
-    case ControlCommand::kReload: return control_reply(reload());
-    case ControlCommand::kReset:
-      if (!map_.is_loaded()) return control_reply(Status(ErrorCode::kUnavailable, "no map is open, nothing to reset"));
-      map_.localizer().reset();
-      log_.info("position forgotten on request");
-      return control_reply(Status::ok());
-  }
-  refresh_counters();
-  board_.stamp(monotonic_ns(), realtime_ns());
-  return control_reply(board_.get());
 }
 
 // The first source decides what poses are computed with; a device that was put in another's place brings its own calibration.
@@ -258,6 +247,7 @@ void Service::on_frame(const CapturedFrame& captured) {
 
 const Localization& Service::localize(const Frame& frame) {
   if (map_.is_loaded()) {
+    pass_hint_on();
     const Localization& localization = map_.localizer().process(frame);
     // What was read from a page that is gone is not to be believed.
     if (!map_.is_damaged()) {
@@ -308,6 +298,10 @@ void Service::set_state(State state, const char* text) {
 }
 
 void Service::connect() {
+  if (hint_listener_) {
+    const Status status = hint_listener_->connect();
+    if (!status && hint_trouble_.is_new(status.message())) log_.warning("hints are not listened for: %s", status.message().c_str());
+  }
   if (sink_->is_connected()) return;
   const Status status = sink_->connect();
   if (status) {

@@ -18,6 +18,7 @@
 #include "daemon/capture_thread.h"
 #include "daemon/config.h"
 #include "daemon/control_socket.h"
+#include "daemon/hint_listener.h"
 #include "daemon/log.h"
 #include "daemon/map_slot.h"
 #include "daemon/sd_notify.h"
@@ -57,7 +58,12 @@ class Service {
   void on_signal();
   void on_wake();
   void on_tick();
-  [[nodiscard]] std::string on_control(ControlCommand command);
+  [[nodiscard]] std::string on_control(const ControlRequest& request);
+
+  // Hints.
+  [[nodiscard]] Status take_hint(const PoseHint& hint);
+  void pass_hint_on();
+  void listen_for_hints();
 
   // Camera.
   void adopt_source(const CaptureReport& report);
@@ -93,6 +99,7 @@ class Service {
   MapSlot map_;
   UniqueFd signal_fd_, wake_fd_, timer_fd_;
   std::unique_ptr<ControlSocket> control_;
+  std::unique_ptr<HintListener> hint_listener_;
   std::unique_ptr<CaptureThread> capture_;
 
   std::optional<RgbdCamera> camera_;  // in use; known once the source was open
@@ -104,7 +111,9 @@ class Service {
   Localization no_map_;             // published without a map
   std::uint32_t num_resets_ = 0;    // of the current localizer
   std::uint32_t reset_offset_ = 0;  // of the ones before
-  RepeatFilter map_trouble_, route_trouble_, source_trouble_;
+  std::optional<PoseHint> hint_;    // waits for the next frame
+  std::int64_t hint_ns_ = 0;        // when it came
+  RepeatFilter map_trouble_, route_trouble_, source_trouble_, hint_trouble_;
   std::int64_t last_frame_ns_ = 0, next_second_ns_ = 0, watchdog_fed_ns_ = 0;
   std::optional<int> exit_code_;
 };

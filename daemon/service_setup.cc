@@ -22,6 +22,11 @@ Status check_size(const std::string& what, int source_width, int source_height, 
                                    "; set source.camera to its calibration"};
 }
 
+bool stays_on_machine(const std::string& lcm_url) {
+  const Result<SourceUrl> url = parse_source_url(lcm_url);
+  return url && url->scheme == "udpm" && url->text_option("ttl", "") == "0";
+}
+
 }  // namespace
 
 CaptureOptions capture_options(const Config& config) {
@@ -52,6 +57,10 @@ SinkOptions sink_options(const Config& config) {
 
 Status check_settings(const Config& config, SourceTable sources, SinkTable sinks) {
   if (const Status status = find_sink(config.publish_lcm_url, sinks).status(); !status) return status.with_context("publish.lcm_url");
+  if (!config.control_hint_channel.empty() && !stays_on_machine(config.publish_lcm_url)) {
+    return {ErrorCode::kInvalid,
+            "control.hint_channel: hints are taken from this machine only; set publish.lcm_url to udpm://GROUP:PORT?ttl=0"};
+  }
   if (config.source_url.empty()) return Status::ok();
   const Result<const SourceEntry*> source = find_source(config.source_url, sources);
   return source ? Status::ok() : Status(ErrorCode::kInvalid, "source.url: " + source.status().message());

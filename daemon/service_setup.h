@@ -21,7 +21,7 @@ namespace camloc {
 [[nodiscard]] MapSlotOptions map_slot_options(const Config& config);
 [[nodiscard]] SinkOptions sink_options(const Config& config);
 
-/// Contradictions that can be seen without a device: a source or a sink that is in no table.
+/// Contradictions that can be seen without a device: a source or a sink that is in no table, hints from other machines.
 [[nodiscard]] Status check_settings(const Config& config, SourceTable sources = frame_sources(), SinkTable sinks = pose_sinks());
 /// The calibration file, where one is named.
 [[nodiscard]] Result<std::optional<RgbdCamera>> read_configured_camera(const Config& config);

@@ -67,6 +67,19 @@ TEST(ServiceSetupTest, LcmUrlNeedsAProvider) {
   }
 }
 
+TEST(ServiceSetupTest, HintsOverLcmStayOnThisMachine) {
+  Config config;
+  config.control_hint_channel = "CAMLOC_HINT";
+  EXPECT_TRUE(check_settings(config)) << "the default URL has ttl=0";
+  for (const char* url : {"udpm://239.255.76.67:7667?ttl=1", "udpm://239.255.76.67:7667", "udpm://239.255.76.67:7667?ttl=00",
+                          "udpm://239.255.76.67:7667?ttl=0&ttl=1", "tcpq://localhost:7700?ttl=0"}) {
+    config.publish_lcm_url = url;
+    const Status status = check_settings(config);
+    EXPECT_EQ(status.code(), ErrorCode::kInvalid) << url;
+    EXPECT_NE(status.message().find("control.hint_channel"), std::string::npos) << status.message();
+  }
+}
+
 TEST(ServiceSetupTest, SourceOwnCalibrationIsUsed) {
   FrameSourceInfo info = source_of(320, 240);
   info.camera = sample_camera(320, 240);
