@@ -15,24 +15,15 @@
 #include "core/io/text.h"
 
 namespace camloc {
-namespace {
 
 namespace fs = std::filesystem;
 
+namespace {
+
 constexpr std::size_t kMaxDevices = 1000;
 
-/// The first line of a small file, printable characters only.
-std::string read_attribute(const fs::path& path) {
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  line.resize(std::min<std::size_t>(line.size(), 200));
-  std::erase_if(line, [](char c) { return c < ' ' || c == 127; });
-  return std::string(trimmed(line));
-}
-
 std::optional<std::uint16_t> read_hex(const fs::path& path) {
-  const std::string text = read_attribute(path);
+  const std::string text = read_system_attribute(path);
   std::uint16_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
   return error == std::errc() && end == text.data() + text.size() && !text.empty() ? std::optional(value) : std::nullopt;
@@ -53,7 +44,7 @@ std::vector<std::string> drivers_of(const fs::path& folder, const std::string& n
 
 std::optional<UsbDevice> read_device(const fs::path& folder) {
   const auto vendor = read_hex(folder / "idVendor"), product = read_hex(folder / "idProduct");
-  const auto bus = parse_int(read_attribute(folder / "busnum")), address = parse_int(read_attribute(folder / "devnum"));
+  const auto bus = parse_int(read_system_attribute(folder / "busnum")), address = parse_int(read_system_attribute(folder / "devnum"));
   if (!vendor || !product || !bus || !address || *bus < 1 || *bus > 999 || *address < 1 || *address > 127) return std::nullopt;
   UsbDevice device;
   device.name = folder.filename().string();
@@ -61,14 +52,24 @@ std::optional<UsbDevice> read_device(const fs::path& folder) {
   device.product = *product;
   device.bus = static_cast<int>(*bus);
   device.address = static_cast<int>(*address);
-  device.serial = read_attribute(folder / "serial");
-  device.product_name = read_attribute(folder / "product");
-  device.speed_mbps = parse_double(read_attribute(folder / "speed")).value_or(0);
+  device.serial = read_system_attribute(folder / "serial");
+  device.speed_mbps = parse_double(read_system_attribute(folder / "speed")).value_or(0);
   device.drivers = drivers_of(folder, device.name);
   return device;
 }
 
 }  // namespace
+
+std::string read_system_attribute(const fs::path& path) {
+  std::ifstream file(path);
+  char text[256] = {};
+  file.read(text, sizeof(text) - 1);
+  const std::string_view line = std::string_view(text).substr(0, std::string_view(text).find('\n'));
+  std::string result(trimmed(line));
+  std::replace_if(
+      result.begin(), result.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
+  return result;
+}
 
 std::string UsbDevice::node() const {
   char text[48];

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,13 @@ struct SystemFolders {
   [[nodiscard]] std::string path(const std::string& absolute) const { return root + absolute; }
 };
 
+/// The first line of a small file of the kernel, without blanks around it; what cannot be printed becomes '?'. Empty without a file.
+[[nodiscard]] std::string read_system_attribute(const std::filesystem::path& path);
+
 struct UsbDevice {
   std::string name;  ///< "1-2.3": bus and ports
   std::uint16_t vendor = 0, product = 0;
-  std::string serial, product_name;  ///< empty where it has none
+  std::string serial;  ///< empty where it has none
   int bus = 0, address = 0;
   double speed_mbps = 0;             ///< 480 for high speed
   std::vector<std::string> drivers;  ///< of its interfaces: "gspca_kinect", "usbfs" for a program
@@ -40,6 +44,9 @@ struct UsbId {
     return device.vendor == vendor && (product == 0 || device.product == product);
   }
 };
+
+/// Some devices of a kind all say 0000000000000000.
+[[nodiscard]] inline bool is_placeholder_serial(const std::string& serial) { return serial.find_first_not_of('0') == std::string::npos; }
 
 /// In the order of bus and address; hubs are among them. Empty where there is no USB.
 [[nodiscard]] std::vector<UsbDevice> list_usb_devices(const SystemFolders& folders = {});

@@ -10,17 +10,15 @@ namespace camloc {
 
 namespace {
 
-bool is_placeholder(const std::string& serial) { return serial.find_first_not_of('0') == std::string::npos; }
-
 bool is_audio(const UsbDevice& device) {
   const auto& products = kinect::kProductsAudio;
   return device.vendor == kinect::kVendorMicrosoft && std::find(products.begin(), products.end(), device.product) != products.end();
 }
 
 std::string serial_of(const UsbDevice& camera, const std::vector<UsbDevice>& devices) {
-  if (!is_placeholder(camera.serial)) return camera.serial;
+  if (!is_placeholder_serial(camera.serial)) return camera.serial;
   for (const UsbDevice& device : devices) {
-    if (is_audio(device) && device.hub() == camera.hub() && !is_placeholder(device.serial)) return device.serial;
+    if (is_audio(device) && device.hub() == camera.hub() && !is_placeholder_serial(device.serial)) return device.serial;
   }
   return "";
 }
