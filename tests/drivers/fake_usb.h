@@ -21,6 +21,14 @@ struct FakeUsbDevice {
   std::string speed = "480";
 };
 
+/// A device of that vendor and product, without anything else.
+inline UsbDevice bare_usb_device(std::uint16_t vendor, std::uint16_t product) {
+  UsbDevice device;
+  device.vendor = vendor;
+  device.product = product;
+  return device;
+}
+
 class FakeUsb {
  public:
   [[nodiscard]] SystemFolders folders() const { return {folder_.path()}; }

@@ -121,7 +121,8 @@ TEST(Sources, DocumentsNameEverySource) {
 }
 
 TEST(Sources, UsbDevicesBelongToTheSourceThatOpensThem) {
-  const UsbDevice kinect{"1-1", 0x045e, 0x02ae}, motor{"1-2", 0x045e, 0x02b0}, xtion{"1-3", 0x1d27, 0x0601}, mouse{"1-4", 0x046d, 0xc077};
+  const UsbDevice kinect = bare_usb_device(0x045e, 0x02ae), motor = bare_usb_device(0x045e, 0x02b0);
+  const UsbDevice xtion = bare_usb_device(0x1d27, 0x0601), mouse = bare_usb_device(0x046d, 0xc077);
   EXPECT_STREQ(find_usb_source(kinect)->scheme, "kinect");
   EXPECT_STREQ(find_usb_source(motor)->scheme, "kinect");
   EXPECT_STREQ(find_usb_source(xtion)->scheme, "openni2");

@@ -30,7 +30,7 @@ TEST(UsbDevices, ReadsWhatTheKernelSays) {
 }
 
 TEST(UsbDevices, IdsMatchAProductOrAllOfAVendor) {
-  const UsbDevice device{"1-1", 0x1d27, 0x0601};
+  const UsbDevice device = bare_usb_device(0x1d27, 0x0601);
   EXPECT_TRUE((UsbId{0x1d27, 0x0601}.matches(device)));
   EXPECT_TRUE((UsbId{0x1d27}.matches(device)));
   EXPECT_FALSE((UsbId{0x1d27, 0x0600}.matches(device)));
