@@ -52,6 +52,11 @@ const auto& table() {
               "Frame of the published poses. wcs needs a map with a site datum (camloc map georef)."},
       Setting{"control", "socket", &Config::control_socket, std::string("/run/camloc/control.sock"), "", 0, 107, "", false,
               "UNIX socket for 'camloc ctl', mode 0660. Empty: off."},
+      Setting{
+          "control", "hint_channel", &Config::control_hint_channel, std::string(), "", 0, 60, "", false,
+          "LCM channel (CAMLOC_HINT by convention) for camloc.pose_hint_t from trusted programs of this machine: as 'camloc ctl hint'.\n"
+          "Wants ttl=0 in publish.lcm_url. Who may send to its group may send hints: route it over lo (camloc-multicast.service)\n"
+          "unless all of the network is trusted. Empty: off."},
       Setting{"log", "level", &Config::log_level, std::string("info"), "", 1, 8, "error|warning|info|debug", true,
               "What is logged to stderr."},
   };

@@ -29,7 +29,7 @@ struct Config {
   bool localize_tracking, localize_depth;
   std::int64_t localize_max_coast_ms;
   std::string publish_lcm_url, publish_pose_channel, publish_status_channel, publish_bot_core_channel, publish_frame;
-  std::string control_socket;
+  std::string control_socket, control_hint_channel;
   std::string log_level;
 
   [[nodiscard]] LogLevel parsed_log_level() const;

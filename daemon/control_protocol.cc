@@ -7,8 +7,11 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
+#include <optional>
+#include <vector>
 
-#include "core/localize/localization.h"
+#include "core/io/text.h"
 
 namespace camloc {
 namespace {
@@ -55,22 +58,37 @@ class JsonObject {
   std::string text_ = "{";
 };
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kBlank = " \t\r";
-  const std::size_t first = text.find_first_not_of(kBlank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+/// "hint" and its numbers.
+Result<ControlRequest> parse_hint(const std::vector<std::string_view>& fields) {
+  constexpr std::size_t kNumFields = 6;
+  std::array<double, kNumFields> numbers{};
+  bool is_complete = fields.size() == kNumFields;
+  for (std::size_t i = 1; is_complete && i < kNumFields; ++i) {
+    const std::optional<double> number = parse_double(fields[i]);
+    is_complete = number.has_value();
+    numbers[i] = number.value_or(0);
+  }
+  if (!is_complete) return Status(ErrorCode::kInvalid, "hint takes five numbers, X Y Z YAW_DEG RADIUS_M");
+  ControlRequest request{ControlCommand::kHint, {}};
+  request.hint.position_m = {numbers[1], numbers[2], numbers[3]};
+  request.hint.yaw_rad = numbers[4] * std::numbers::pi / 180;
+  request.hint.radius_m = numbers[5];
+  if (request.hint.is_valid()) return request;
+  return Status(ErrorCode::kInvalid, "hint: the radius is to be above 0 and at most 20 m, and every number finite");
 }
 
 }  // namespace
 
-Result<ControlCommand> parse_control_request(std::string_view line) {
-  const std::string_view word = trimmed(line);
-  if (word == "status") return ControlCommand::kStatus;
-  if (word == "reload") return ControlCommand::kReload;
-  if (word == "reset") return ControlCommand::kReset;
+Result<ControlRequest> parse_control_request(std::string_view line) {
+  const std::string_view text = trimmed(line);
+  if (text == "status") return ControlRequest{ControlCommand::kStatus, {}};
+  if (text == "reload") return ControlRequest{ControlCommand::kReload, {}};
+  if (text == "reset") return ControlRequest{ControlCommand::kReset, {}};
+  const std::vector<std::string_view> fields = split_fields(text, " \t");
+  if (!fields.empty() && fields[0] == "hint") return parse_hint(fields);
   constexpr std::size_t kShown = 40;
-  return Status(ErrorCode::kInvalid, "unknown command '" + std::string(word.substr(0, kShown)) + "': one of status, reload, reset");
+  return Status(ErrorCode::kInvalid,
+                "unknown command '" + std::string(text.substr(0, kShown)) + "': one of status, reload, reset, hint X Y Z YAW_DEG RADIUS_M");
 }
 
 std::string control_reply(const Status& status) {
@@ -80,13 +98,13 @@ std::string control_reply(const Status& status) {
   return json.str();
 }
 
-std::string control_reply(const status_t& status) {
+std::string control_reply(const DaemonStatus& status) {
   JsonObject json;
   std::array<char, 20> map_id{};
   std::snprintf(map_id.data(), map_id.size(), "%016llx", static_cast<unsigned long long>(status.map_id));
   json.add("ok", true);
-  json.add("utime", status.utime);
-  json.add("state", to_string(static_cast<State>(status.state)));
+  json.add("utime", status.written_epoch_us);
+  json.add("state", to_string(status.state));
   json.add("state_text", std::string_view(status.state_text));
   json.add("source", std::string_view(status.source));
   json.add("map_path", std::string_view(status.map_path));
@@ -114,7 +132,7 @@ std::string control_reply(const status_t& status) {
   json.add("latency_p50_ms", status.latency_p50_ms);
   json.add("latency_max_ms", status.latency_max_ms);
   json.add("rss_bytes", status.rss_bytes);
-  json.add("is_calibration_suspect", status.is_calibration_suspect != 0);
+  json.add("is_calibration_suspect", status.is_calibration_suspect);
   json.add("focal_scale", status.focal_scale);
   return json.str();
 }

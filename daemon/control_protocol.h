@@ -8,21 +8,28 @@
 #include <string>
 #include <string_view>
 
-#include "camloc/status_t.hpp"
 #include "core/base/result.h"
+#include "core/localize/pose_hint.h"
+#include "daemon/pose_report.h"
 
 namespace camloc {
 
-enum class ControlCommand : std::uint8_t { kStatus, kReload, kReset };
+enum class ControlCommand : std::uint8_t { kStatus, kReload, kReset, kHint };
 
-/// One line without its line feed; a carriage return and blanks around the word are forgiven. kInvalid with the list of
-/// commands otherwise; its message quotes the bytes as they came.
-[[nodiscard]] Result<ControlCommand> parse_control_request(std::string_view line);
+struct ControlRequest {
+  ControlCommand command = ControlCommand::kStatus;
+  PoseHint hint;  ///< of kHint, valid
+};
+
+/// One line without its line feed: "status", "reload", "reset" or "hint X Y Z YAW_DEG RADIUS_M", all in the map. A carriage return
+/// and blanks around it are forgiven. kInvalid otherwise, with the list of commands or what a hint lacks; the message quotes the
+/// bytes as they came.
+[[nodiscard]] Result<ControlRequest> parse_control_request(std::string_view line);
 
 /// {"ok":true} / {"ok":false,"error":"..."}, without a line feed.
 [[nodiscard]] std::string control_reply(const Status& status);
-/// {"ok":true,"state":"LOCALIZED",...}: every field of status_t under its name; map_id as text in hexadecimal, because
+/// {"ok":true,"state":"LOCALIZED",...}: every field under the name it has in status_t; map_id as text in hexadecimal, because
 /// JSON numbers lose the low bits of 64-bit integers.
-[[nodiscard]] std::string control_reply(const status_t& status);
+[[nodiscard]] std::string control_reply(const DaemonStatus& status);
 
 }  // namespace camloc

@@ -139,8 +139,8 @@ bool ControlSocket::read_request(Client& client, const ControlHandler& handler) 
   if (line_end == std::string_view::npos && text.size() == kMaxRequest) {
     client.reply = control_reply(Status(ErrorCode::kInvalid, "request too long"));
   } else {
-    const Result<ControlCommand> command = parse_control_request(text.substr(0, line_end));
-    client.reply = command ? handler(*command) : control_reply(command.status());
+    const Result<ControlRequest> request = parse_control_request(text.substr(0, line_end));
+    client.reply = request ? handler(*request) : control_reply(request.status());
   }
   client.reply += '\n';
   return true;

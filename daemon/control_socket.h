@@ -22,7 +22,7 @@
 namespace camloc {
 
 /// Gives the reply line, without its line feed.
-using ControlHandler = std::function<std::string(ControlCommand)>;
+using ControlHandler = std::function<std::string(const ControlRequest&)>;
 
 /// Belongs to one thread.
 class ControlSocket {

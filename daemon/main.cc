@@ -14,7 +14,7 @@
 #include "daemon/config.h"
 #include "daemon/service.h"
 #include "daemon/service_setup.h"
-#include "drivers/frame_source.h"
+#include "drivers/sources.h"
 
 namespace {
 

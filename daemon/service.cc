@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The loop itself, and the way of a frame through it. Map and reload are in service_map.cc.
+// The loop itself, and the way of a frame through it. Map and reload are in service_map.cc, what others ask for in
+// service_control.cc.
 #include "daemon/service.h"
 
 #include <signal.h>
@@ -52,10 +53,7 @@ void drain(int fd) {
 }  // namespace
 
 Service::Service(ServiceInputs inputs)
-    : in_(std::move(inputs)),
-      log_(in_.config.parsed_log_level()),
-      board_(in_.config.source_url, in_.config.map_path, monotonic_ns()),
-      publisher_(publish_options(in_.config)) {
+    : in_(std::move(inputs)), log_(in_.config.parsed_log_level()), board_(in_.config.source_url, in_.config.map_path, monotonic_ns()) {
   no_map_.state = State::kNoMap;
   board_.set_state(State::kNoCamera, in_.config.source_url.empty() ? "source.url is not set" : "opening the source");
 }
@@ -63,6 +61,9 @@ Service::Service(ServiceInputs inputs)
 Service::~Service() = default;
 
 Status Service::start() {
+  Result<std::unique_ptr<PoseSink>> sink = open_pose_sink(sink_options(in_.config), in_.sinks);
+  if (!sink) return sink.status().with_context("publish.lcm_url");
+  sink_ = std::move(sink).value();
   if (!in_.config.control_socket.empty()) {
     Result<std::unique_ptr<ControlSocket>> control = ControlSocket::open(in_.config.control_socket);
     if (!control) return control.status();
@@ -79,6 +80,7 @@ Status Service::start() {
   if (!in_.config.source_url.empty()) {
     capture_ = std::make_unique<CaptureThread>(capture_options(in_.config), in_.open_source, wake_fd_.get());
   }
+  listen_for_hints();
   connect();
   log_.info("camlocd " CAMLOC_VERSION " started, source '%s', map %s", in_.config.source_url.c_str(), in_.config.map_path.c_str());
   notifier_.ready(board_.get().state_text.c_str());
@@ -93,20 +95,22 @@ int Service::run() {
 }
 
 void Service::step(int timeout_ms) {
-  constexpr int kOwnFds = 3;
+  constexpr int kOwnFds = 4;
   std::array<pollfd, kOwnFds + ControlSocket::kMaxPollFds> fds{};
   fds[0] = {signal_fd_.get(), POLLIN, 0};
   fds[1] = {wake_fd_.get(), POLLIN, 0};
   fds[2] = {timer_fd_.get(), POLLIN, 0};
+  fds[3] = {hint_listener_ ? hint_listener_->fd() : -1, POLLIN, 0};
   const std::span<pollfd> control_fds = std::span(fds).subspan(kOwnFds);
   const int num_control = control_ ? control_->prepare_poll(control_fds) : 0;
   if (::poll(fds.data(), static_cast<nfds_t>(kOwnFds + num_control), timeout_ms) <= 0) return;
   if (fds[0].revents != 0) on_signal();
   if (fds[1].revents != 0) on_wake();
   if (fds[2].revents != 0) on_tick();
+  if (fds[3].revents != 0) hint_listener_->handle(realtime_ns());
   if (num_control > 0) {
     control_->handle(control_fds.first(static_cast<std::size_t>(num_control)), monotonic_ns(),
-                     [this](ControlCommand command) { return on_control(command); });
+                     [this](const ControlRequest& request) { return on_control(request); });
   }
 }
 
@@ -157,21 +161,6 @@ void Service::on_tick() {
   board_.close_window(now_ns);
   publish_status();
   notifier_.status(board_.get().state_text.c_str());
-}
-
-std::string Service::on_control(ControlCommand command) {
-  switch (command) {
-    case ControlCommand::kStatus: break;
-    case ControlCommand::kReload: return control_reply(reload());
-    case ControlCommand::kReset:
-      if (!map_.is_loaded()) return control_reply(Status(ErrorCode::kUnavailable, "no map is open, nothing to reset"));
-      map_.localizer().reset();
-      log_.info("position forgotten on request");
-      return control_reply(Status::ok());
-  }
-  refresh_counters();
-  board_.stamp(monotonic_ns(), realtime_ns());
-  return control_reply(board_.get());
 }
 
 // The first source decides what poses are computed with; a device that was put in another's place brings its own calibration.
@@ -247,8 +236,7 @@ void Service::on_frame(const CapturedFrame& captured) {
     context.map_id = map_.info().map_id;
     if (in_.config.publish_frame == "wcs") context.datum = &*map_.info().wcs;
   }
-  publisher_.publish(localization, context);
-  board_.counters().poses_published = static_cast<std::int64_t>(publisher_.num_poses_published());
+  if (sink_->publish(make_pose_report(localization, context))) ++board_.counters().poses_published;
 
   ++num_processed_;
   last_frame_ns_ = monotonic_ns();
@@ -259,6 +247,7 @@ void Service::on_frame(const CapturedFrame& captured) {
 
 const Localization& Service::localize(const Frame& frame) {
   if (map_.is_loaded()) {
+    pass_hint_on();
     const Localization& localization = map_.localizer().process(frame);
     // What was read from a page that is gone is not to be believed.
     if (!map_.is_damaged()) {
@@ -291,7 +280,7 @@ void Service::report_state(const Localization& localization) {
 
 void Service::report_calibration() {
   const CalibrationHealth& health = map_.localizer().calibration();
-  const bool was_suspect = board_.get().is_calibration_suspect != 0;
+  const bool was_suspect = board_.get().is_calibration_suspect;
   board_.set_calibration(health);
   if (health.is_suspect == was_suspect) return;
   if (health.is_suspect) {
@@ -309,8 +298,12 @@ void Service::set_state(State state, const char* text) {
 }
 
 void Service::connect() {
-  if (publisher_.is_connected()) return;
-  const Status status = publisher_.connect();
+  if (hint_listener_) {
+    const Status status = hint_listener_->connect();
+    if (!status && hint_trouble_.is_new(status.message())) log_.warning("hints are not listened for: %s", status.message().c_str());
+  }
+  if (sink_->is_connected()) return;
+  const Status status = sink_->connect();
   if (status) {
     log_.info("publishing on %s", in_.config.publish_lcm_url.c_str());
     route_trouble_.clear();
@@ -322,12 +315,12 @@ void Service::connect() {
 void Service::publish_status() {
   refresh_counters();
   board_.stamp(monotonic_ns(), realtime_ns());
-  publisher_.publish(board_.get());
+  sink_->publish(board_.get());
 }
 
 // What the capture thread counts, as of now: between two messages the control socket asks, too.
 void Service::refresh_counters() {
-  status_t& counters = board_.counters();
+  DaemonStatus& counters = board_.counters();
   if (capture_) board_.set_capture(capture_->counts(), capture_->health(), capture_->mailbox().num_dropped());
   counters.reset_counter = std::int64_t{reset_offset_} + num_resets_;
 }

@@ -18,10 +18,11 @@
 #include "daemon/capture_thread.h"
 #include "daemon/config.h"
 #include "daemon/control_socket.h"
+#include "daemon/hint_listener.h"
 #include "daemon/log.h"
 #include "daemon/map_slot.h"
-#include "daemon/pose_publisher.h"
 #include "daemon/sd_notify.h"
+#include "daemon/sinks/sinks.h"
 #include "daemon/status_board.h"
 
 namespace camloc {
@@ -31,6 +32,7 @@ struct ServiceInputs {
   std::optional<RgbdCamera> camera;               ///< of source.camera
   std::function<Result<Config>()> reload_config;  ///< reads the configuration anew
   OpenSource open_source;                         ///< open_frame_source, or a test's own
+  SinkTable sinks = pose_sinks();
 };
 
 class Service {
@@ -39,7 +41,7 @@ class Service {
   ~Service();
 
   /// Takes the control socket, guards against truncated maps, blocks the signals it handles, starts the capture thread.
-  /// Errors: those of ControlSocket. A missing camera, map or network is none.
+  /// Errors: those of ControlSocket and of the sink's configuration. A missing camera, map or network is none.
   [[nodiscard]] Status start();
   /// Runs until there is an exit code: 0 asked to stop or, if so configured, recording over; 2 configuration.
   [[nodiscard]] int run();
@@ -48,7 +50,7 @@ class Service {
   /// Ends the capture thread, gives the control socket back. False when the source hangs: see CaptureThread::stop().
   [[nodiscard]] bool stop();
 
-  [[nodiscard]] const status_t& status() const { return board_.get(); }
+  [[nodiscard]] const DaemonStatus& status() const { return board_.get(); }
   [[nodiscard]] std::optional<int> exit_code() const { return exit_code_; }
 
  private:
@@ -56,7 +58,12 @@ class Service {
   void on_signal();
   void on_wake();
   void on_tick();
-  [[nodiscard]] std::string on_control(ControlCommand command);
+  [[nodiscard]] std::string on_control(const ControlRequest& request);
+
+  // Hints.
+  [[nodiscard]] Status take_hint(const PoseHint& hint);
+  void pass_hint_on();
+  void listen_for_hints();
 
   // Camera.
   void adopt_source(const CaptureReport& report);
@@ -88,10 +95,11 @@ class Service {
   Notifier notifier_;
   ProgressWatch progress_;
   StatusBoard board_;
-  PosePublisher publisher_;
+  std::unique_ptr<PoseSink> sink_;
   MapSlot map_;
   UniqueFd signal_fd_, wake_fd_, timer_fd_;
   std::unique_ptr<ControlSocket> control_;
+  std::unique_ptr<HintListener> hint_listener_;
   std::unique_ptr<CaptureThread> capture_;
 
   std::optional<RgbdCamera> camera_;  // in use; known once the source was open
@@ -103,7 +111,9 @@ class Service {
   Localization no_map_;             // published without a map
   std::uint32_t num_resets_ = 0;    // of the current localizer
   std::uint32_t reset_offset_ = 0;  // of the ones before
-  RepeatFilter map_trouble_, route_trouble_, source_trouble_;
+  std::optional<PoseHint> hint_;    // waits for the next frame
+  std::int64_t hint_ns_ = 0;        // when it came
+  RepeatFilter map_trouble_, route_trouble_, source_trouble_, hint_trouble_;
   std::int64_t last_frame_ns_ = 0, next_second_ns_ = 0, watchdog_fed_ns_ = 0;
   std::optional<int> exit_code_;
 };

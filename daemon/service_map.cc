@@ -61,6 +61,7 @@ void Service::announce_map() {
   no_map_.reason = Reason::kNotStarted;
   reset_offset_ += num_resets_ + 1;  // another map, another frame of reference: poses may jump
   num_resets_ = 0;
+  hint_.reset();
   const MapInfo& info = map_.info();
   board_.set_map(map_.path(), info.map_id);
   log_.info("map open: %s, id %016llx, %u landmarks, %u keyframes", map_.path().c_str(), static_cast<unsigned long long>(info.map_id),

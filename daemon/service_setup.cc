@@ -5,18 +5,12 @@
 #include "daemon/service_setup.h"
 
 #include <algorithm>
-#include <array>
 
 #include "core/io/camera_file.h"
 #include "daemon/clock.h"
 
 namespace camloc {
 namespace {
-
-std::string scheme_of(const std::string& url) {
-  const std::size_t end = url.find("://");
-  return end == std::string::npos ? "replay" : url.substr(0, end);
-}
 
 std::string size_text(int width, int height) { return std::to_string(width) + " x " + std::to_string(height); }
 
@@ -26,6 +20,11 @@ Status check_size(const std::string& what, int source_width, int source_height, 
   return {ErrorCode::kInvalid, config.source_url + " delivers " + what + " images of " + size_text(source_width, source_height) + " but " +
                                    calibration + " is for " + size_text(camera.width, camera.height) +
                                    "; set source.camera to its calibration"};
+}
+
+bool stays_on_machine(const std::string& lcm_url) {
+  const Result<SourceUrl> url = parse_source_url(lcm_url);
+  return url && url->scheme == "udpm" && url->text_option("ttl", "") == "0";
 }
 
 }  // namespace
@@ -52,23 +51,19 @@ MapSlotOptions map_slot_options(const Config& config) {
   return options;
 }
 
-PublishOptions publish_options(const Config& config) {
+SinkOptions sink_options(const Config& config) {
   return {config.publish_lcm_url, config.publish_pose_channel, config.publish_status_channel, config.publish_bot_core_channel};
 }
 
-Status check_settings(const Config& config) {
-  if (config.publish_lcm_url.find("://") == std::string::npos) {
-    return {ErrorCode::kInvalid, "publish.lcm_url: '" + config.publish_lcm_url + "' has no provider; e.g. udpm://239.255.76.67:7667?ttl=0"};
+Status check_settings(const Config& config, SourceTable sources, SinkTable sinks) {
+  if (const Status status = find_sink(config.publish_lcm_url, sinks).status(); !status) return status.with_context("publish.lcm_url");
+  if (!config.control_hint_channel.empty() && !stays_on_machine(config.publish_lcm_url)) {
+    return {ErrorCode::kInvalid,
+            "control.hint_channel: hints are taken from this machine only; set publish.lcm_url to udpm://GROUP:PORT?ttl=0"};
   }
   if (config.source_url.empty()) return Status::ok();
-  const std::string scheme = scheme_of(config.source_url);
-  std::string known;
-  for (const FrameSourceScheme& candidate : frame_source_schemes()) {
-    const std::string name = candidate.scheme.substr(0, candidate.scheme.find(':'));
-    if (name == scheme) return Status::ok();
-    known += (known.empty() ? "" : ", ") + name;
-  }
-  return {ErrorCode::kInvalid, "source.url: this build knows no '" + scheme.substr(0, 40) + "' source; it knows " + known};
+  const Result<const SourceEntry*> source = find_source(config.source_url, sources);
+  return source ? Status::ok() : Status(ErrorCode::kInvalid, "source.url: " + source.status().message());
 }
 
 Result<std::optional<RgbdCamera>> read_configured_camera(const Config& config) {
@@ -88,14 +83,12 @@ Result<RgbdCamera> match_camera(const Config& config, const std::optional<RgbdCa
   return *camera;
 }
 
-Status check_config(const Config& config) {
-  if (const Status status = check_settings(config); !status) return status;
+Status check_config(const Config& config, SourceTable sources, SinkTable sinks) {
+  if (const Status status = check_settings(config, sources, sinks); !status) return status;
   const Result<std::optional<RgbdCamera>> camera = read_configured_camera(config);
   if (!camera) return camera.status();
-  constexpr std::array kRecordings = {"replay", "sample"};
-  const bool is_recording = std::find(kRecordings.begin(), kRecordings.end(), scheme_of(config.source_url)) != kRecordings.end();
-  if (config.source_url.empty() || !is_recording) return Status::ok();
-  const Result<std::unique_ptr<FrameSource>> source = open_frame_source(config.source_url);
+  if (config.source_url.empty() || !(*find_source(config.source_url, sources))->is_recording) return Status::ok();
+  const Result<std::unique_ptr<FrameSource>> source = open_frame_source(config.source_url, {}, sources);
   if (!source) return source.status().with_context("source.url");
   return match_camera(config, *camera, (*source)->info()).status();
 }

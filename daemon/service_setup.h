@@ -12,17 +12,17 @@
 #include "daemon/capture_thread.h"
 #include "daemon/config.h"
 #include "daemon/map_slot.h"
-#include "daemon/pose_publisher.h"
-#include "drivers/frame_source.h"
+#include "daemon/sinks/sinks.h"
+#include "drivers/sources.h"
 
 namespace camloc {
 
 [[nodiscard]] CaptureOptions capture_options(const Config& config);
 [[nodiscard]] MapSlotOptions map_slot_options(const Config& config);
-[[nodiscard]] PublishOptions publish_options(const Config& config);
+[[nodiscard]] SinkOptions sink_options(const Config& config);
 
-/// Contradictions that can be seen without a device: unknown source scheme, nonsense in an LCM URL.
-[[nodiscard]] Status check_settings(const Config& config);
+/// Contradictions that can be seen without a device: a source or a sink that is in no table, hints from other machines.
+[[nodiscard]] Status check_settings(const Config& config, SourceTable sources = frame_sources(), SinkTable sinks = pose_sinks());
 /// The calibration file, where one is named.
 [[nodiscard]] Result<std::optional<RgbdCamera>> read_configured_camera(const Config& config);
 /// The calibration to use with a source: the configured one, else the source's own. Errors (kInvalid) name both sides:
@@ -31,7 +31,7 @@ namespace camloc {
                                               const FrameSourceInfo& source);
 /// Everything above; opens the source too when it is a recording, which disturbs nobody. What may be missing at start
 /// (map, device, network) is not looked at.
-[[nodiscard]] Status check_config(const Config& config);
+[[nodiscard]] Status check_config(const Config& config, SourceTable sources = frame_sources(), SinkTable sinks = pose_sinks());
 
 /// Names of settings that differ and that a reload cannot change, comma-separated; empty when there are none.
 [[nodiscard]] std::string changes_that_need_restart(const Config& from, const Config& to);

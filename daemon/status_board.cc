@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The record behind status_t.
+// See status_board.h.
 #include "daemon/status_board.h"
 
 #include <fcntl.h>
@@ -29,12 +29,11 @@ std::int64_t resident_bytes(int statm_fd) {
 }  // namespace
 
 StatusBoard::StatusBoard(const std::string& source, const std::string& map_path, std::int64_t now_ns)
-    : status_(), latency_(now_ns), memory_fd_(::open("/proc/self/statm", O_RDONLY | O_CLOEXEC)), started_ns_(now_ns) {
+    : latency_(now_ns), memory_fd_(::open("/proc/self/statm", O_RDONLY | O_CLOEXEC)), started_ns_(now_ns) {
   status_.source = source;
   status_.map_path = map_path;
   status_.state_text.reserve(kMaxStateText);
-  status_.camera_state = source.empty() ? "none" : to_string(CapturePhase::kOpening);
-  status_.focal_scale = 1;
+  if (!source.empty()) status_.camera_state = to_string(CapturePhase::kOpening);
 }
 
 void StatusBoard::add_frame(const Localization& localization, std::int64_t latency_ns) {
@@ -44,14 +43,14 @@ void StatusBoard::add_frame(const Localization& localization, std::int64_t laten
 
 bool StatusBoard::set_state(State state, const char* text) {
   const bool is_other = state != this->state();
-  status_.state = static_cast<std::int8_t>(state);
+  status_.state = state;
   status_.state_text.assign(text, std::min(std::strlen(text), kMaxStateText));
   return is_other;
 }
 
 void StatusBoard::set_map(const std::string& path, std::uint64_t map_id) {
   status_.map_path = path;
-  status_.map_id = static_cast<std::int64_t>(map_id);
+  status_.map_id = map_id;
 }
 
 void StatusBoard::set_capture(const CaptureCounts& counts, const FrameSourceHealth& health, std::uint64_t num_dropped) {
@@ -71,7 +70,7 @@ void StatusBoard::set_capture(const CaptureCounts& counts, const FrameSourceHeal
 }
 
 void StatusBoard::set_calibration(const CalibrationHealth& health) {
-  status_.is_calibration_suspect = health.is_suspect ? 1 : 0;
+  status_.is_calibration_suspect = health.is_suspect;
   status_.focal_scale = health.focal_scale;
 }
 
@@ -84,7 +83,7 @@ void StatusBoard::close_window(std::int64_t now_ns) {
 }
 
 void StatusBoard::stamp(std::int64_t now_ns, std::int64_t now_epoch_ns) {
-  status_.utime = now_epoch_ns / 1000;
+  status_.written_epoch_us = now_epoch_ns / 1000;
   status_.uptime_us = (now_ns - started_ns_) / 1000;
 }
 

@@ -4,9 +4,9 @@
 // Prints the frame sources of this build, "scheme<tab>help" a line, for manual pages and shell completion.
 #include <cstdio>
 
-#include "drivers/frame_source.h"
+#include "drivers/sources.h"
 
 int main() {
-  for (const auto& scheme : camloc::frame_source_schemes()) std::printf("%s\t%s\n", scheme.scheme.c_str(), scheme.help.c_str());
+  for (const camloc::SourceEntry& source : camloc::frame_sources()) std::printf("%s\t%s\n", source.scheme, source.help);
   return 0;
 }

@@ -1,15 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A depth camera, live or recorded, behind one small interface, chosen by URL.
+// A depth camera, live or recorded, behind one small interface. Which there are, and how to open one by its URL, is in sources.h.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "core/base/frame.h"
 #include "core/base/result.h"
@@ -64,21 +62,5 @@ class FrameSource {
   /// Resets the device as if it were unplugged and plugged in. Afterwards the source is of no use: open again.
   [[nodiscard]] virtual Status reset_device() { return {ErrorCode::kUnsupported, "this source cannot reset its device"}; }
 };
-
-/// `scheme://rest?key=value&...`; a bare path means replay://path.
-///   replay://DIR   TUM RGB-D or 7-Scenes folder; speed=1 (0 = as fast as possible, the default), loop=0|1,
-///                  frames=start:stop:step[,...] (Python slice rules), rate_hz= for folders without stamps (30)
-///   openni2://DEV  a camera with an OpenNI2 driver, by URI, serial number or index, or the first; width=, height=, rate_hz=
-///   oni://FILE     a recording of OpenNI or OpenNI2; speed=, loop=, frames=, exclude=, registered=1
-///   sample://      generated images; rate_hz=, frames=, width=, height=
-///   kinect://[SERIAL|INDEX]   Kinect V1; depth=registered|raw|off, exposure_us=, gain=, led=, tilt_deg=, ... (kinect_options.h)
-[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_frame_source(const std::string& url, const FrameSourceOptions& options = {});
-
-/// Schemes this build knows, with a line of help each.
-struct FrameSourceScheme {
-  std::string scheme;
-  std::string help;
-};
-[[nodiscard]] std::vector<FrameSourceScheme> frame_source_schemes();
 
 }  // namespace camloc

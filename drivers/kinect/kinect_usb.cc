@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "drivers/kinect/kinect_protocol.h"
+#include "drivers/usb_devices.h"
 
 namespace camloc::kinect {
 
@@ -83,8 +84,6 @@ std::string serial_of(libusb_device_handle* handle, std::uint8_t string_index) {
   return serial;
 }
 
-bool is_placeholder(const std::string& serial) { return serial.find_first_not_of('0') == std::string::npos; }
-
 bool are_siblings(libusb_device* a, libusb_device* b) {
   libusb_device* const hub = libusb_get_parent(a);
   return hub != nullptr && hub == libusb_get_parent(b);
@@ -98,7 +97,7 @@ std::string serial_of_audio(const DeviceList& list, libusb_device* camera) {
     if (libusb_open(device, &handle) != LIBUSB_SUCCESS) continue;
     const UsbHandle owner(handle);
     const std::string serial = serial_of(handle, descriptor_of(device)->iSerialNumber);
-    if (!is_placeholder(serial)) return serial;
+    if (!is_placeholder_serial(serial)) return serial;
   }
   return {};
 }
@@ -121,7 +120,7 @@ Result<OpenCamera> open_one(const DeviceList& list, libusb_device* device) {
   camera.release = descriptor.bcdDevice;
   camera.location = location_of(device);
   camera.serial = serial_of(handle, descriptor.iSerialNumber);
-  if (is_placeholder(camera.serial)) camera.serial = serial_of_audio(list, device);
+  if (is_placeholder_serial(camera.serial)) camera.serial = serial_of_audio(list, device);
   return camera;
 }
 

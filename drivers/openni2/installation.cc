@@ -112,4 +112,28 @@ Openni2Installation inspect_openni2() {
   return result;
 }
 
+CameraListing listing_of(const Openni2Installation& openni2) {
+  CameraListing listing;
+  listing.problem = openni2.problem;
+  if (!openni2.is_library_found) {
+    listing.advice = "sudo apt install libopenni2-0";
+    return listing;
+  }
+  const auto num_loaded =
+      std::count_if(openni2.drivers.begin(), openni2.drivers.end(), [](const Openni2Driver& driver) { return driver.is_loaded; });
+  if (!openni2.is_started || num_loaded == 0) {
+    if (listing.problem.empty()) listing.problem = "no driver in " + openni2.drivers_folder + " was loaded";
+    listing.advice =
+        "ls " + openni2.drivers_folder + "; drivers are called lib*.so.0; Repository= in /etc/openni2/OpenNI.ini names another folder";
+    return listing;
+  }
+  listing.searched = "OpenNI2 " + openni2.version + ", " + std::to_string(num_loaded) + " drivers in " + openni2.drivers_folder;
+  listing.advice = "plug the camera in and see 'usb rights'; a Kinect V1 is kinect://, not openni2://";
+  for (const Openni2Device& device : openni2.devices)
+    listing.cameras.push_back({"openni2://" + device.uri, device.vendor + " " + device.name, "USB id " + device.usb_id, ""});
+  return listing;
+}
+
+CameraListing list_openni2_cameras(const SystemFolders& /*folders*/) { return listing_of(inspect_openni2()); }
+
 }  // namespace camloc

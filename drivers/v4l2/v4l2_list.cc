@@ -24,21 +24,10 @@ namespace fs = std::filesystem;
 constexpr int kMaxLevels = 8;           // from an interface to its device; two in practice
 constexpr std::size_t kMaxNodes = 256;  // minors of a character device
 
-std::string first_line(const fs::path& path) {
-  std::ifstream file(path);
-  char text[256] = {};
-  file.read(text, sizeof(text) - 1);
-  const std::string_view line = std::string_view(text).substr(0, std::string_view(text).find('\n'));
-  std::string result(trimmed(line));
-  std::replace_if(
-      result.begin(), result.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
-  return result;
-}
-
 /// The folder of the USB device that the node hangs on.
-std::optional<fs::path> usb_device_folder(const std::string& name, const V4l2Folders& folders) {
+std::optional<fs::path> usb_device_folder(const std::string& name, const SystemFolders& folders) {
   std::error_code error;
-  fs::path folder = fs::canonical(fs::path(folders.sys) / "class/video4linux" / name / "device", error);
+  fs::path folder = fs::canonical(fs::path(folders.path("/sys/class/video4linux")) / name / "device", error);
   if (error) return std::nullopt;
   for (int level = 0; level < kMaxLevels && folder.has_relative_path(); ++level, folder = folder.parent_path()) {
     if (fs::exists(folder / "busnum", error) && fs::exists(folder / "devnum", error)) return folder;
@@ -46,17 +35,18 @@ std::optional<fs::path> usb_device_folder(const std::string& name, const V4l2Fol
   return std::nullopt;
 }
 
-std::string usb_node_of(const fs::path& device, const V4l2Folders& folders) {
-  const std::optional<std::int64_t> bus = parse_int(first_line(device / "busnum")), number = parse_int(first_line(device / "devnum"));
+std::string usb_node_of(const fs::path& device, const SystemFolders& folders) {
+  const std::optional<std::int64_t> bus = parse_int(read_system_attribute(device / "busnum")),
+                                    number = parse_int(read_system_attribute(device / "devnum"));
   if (!bus || !number || *bus < 0 || *bus > 999 || *number < 0 || *number > 999) return "";
   char name[16];
   std::snprintf(name, sizeof(name), "%03d/%03d", static_cast<int>(*bus), static_cast<int>(*number));
-  return folders.dev + "/bus/usb/" + name;
+  return folders.path("/dev/bus/usb/") + name;
 }
 
-std::string by_id_link(const std::string& path, const V4l2Folders& folders) {
+std::string by_id_link(const std::string& path, const SystemFolders& folders) {
   std::error_code error;
-  for (fs::directory_iterator entry(folders.dev + "/v4l/by-id", error), end; !error && entry != end; entry.increment(error)) {
+  for (fs::directory_iterator entry(folders.path("/dev/v4l/by-id"), error), end; !error && entry != end; entry.increment(error)) {
     std::error_code broken;
     const fs::path target = fs::weakly_canonical(entry->path(), broken);
     if (!broken && target.filename() == fs::path(path).filename()) return entry->path().string();
@@ -69,10 +59,10 @@ std::optional<std::int64_t> node_number(const std::string& name) {
   return name.starts_with("video") ? parse_int(std::string_view(name).substr(5)) : std::nullopt;
 }
 
-std::vector<std::string> node_names(const V4l2Folders& folders) {
+std::vector<std::string> node_names(const SystemFolders& folders) {
   std::vector<std::string> names;
   std::error_code error;
-  for (fs::directory_iterator entry(folders.sys + "/class/video4linux", error), end; !error && entry != end; entry.increment(error)) {
+  for (fs::directory_iterator entry(folders.path("/sys/class/video4linux"), error), end; !error && entry != end; entry.increment(error)) {
     const std::string name = entry->path().filename().string();
     if (node_number(name) && names.size() < kMaxNodes) names.push_back(name);
   }
@@ -94,25 +84,25 @@ int fitness(const V4l2DeviceInfo& node, V4l2Role role) {
 
 }  // namespace
 
-V4l2DeviceInfo describe_v4l2_node(const std::string& path, const V4l2Folders& folders) {
+V4l2DeviceInfo describe_v4l2_node(const std::string& path, const SystemFolders& folders) {
   std::error_code error;
   const fs::path real = fs::weakly_canonical(path, error);
   V4l2DeviceInfo info;
   info.path = error || real.empty() ? path : real.string();
   const std::string name = fs::path(info.path).filename().string();
-  info.name = first_line(fs::path(folders.sys) / "class/video4linux" / name / "name");
+  info.name = read_system_attribute(fs::path(folders.path("/sys/class/video4linux")) / name / "name");
   info.by_id = by_id_link(info.path, folders);
   if (const std::optional<fs::path> device = usb_device_folder(name, folders)) {
-    info.serial = first_line(*device / "serial");
+    info.serial = read_system_attribute(*device / "serial");
     info.usb_node = usb_node_of(*device, folders);
   }
   return info;
 }
 
-std::vector<V4l2DeviceInfo> list_v4l2_devices(V4l2Io& io, const V4l2Folders& folders) {
+std::vector<V4l2DeviceInfo> list_v4l2_devices(V4l2Io& io, const SystemFolders& folders) {
   std::vector<V4l2DeviceInfo> nodes;
   for (const std::string& name : node_names(folders)) {
-    V4l2DeviceInfo info = describe_v4l2_node(folders.dev + "/" + name, folders);
+    V4l2DeviceInfo info = describe_v4l2_node(folders.path("/dev/" + name), folders);
     const Result<V4l2Device> device = V4l2Device::open(io, info.path);
     if (!device && device.status().code() == ErrorCode::kUnsupported) continue;
     if (device) {
@@ -128,9 +118,19 @@ std::vector<V4l2DeviceInfo> list_v4l2_devices(V4l2Io& io, const V4l2Folders& fol
   return nodes;
 }
 
-std::vector<V4l2DeviceInfo> list_v4l2_devices() { return list_v4l2_devices(*make_system_v4l2_io(), {}); }
+CameraListing list_v4l2_cameras(V4l2Io& io, const SystemFolders& folders) {
+  CameraListing listing{
+      {}, folders.path("/sys/class/video4linux"), "", "plug it in, then 'ls -l /dev/v4l/by-id'; the nodes belong to the group video"};
+  for (const V4l2DeviceInfo& device : list_v4l2_devices(io, folders)) {
+    listing.cameras.push_back({"v4l2://" + (device.serial.empty() ? device.path : "serial:" + device.serial), device.name,
+                               device.path + (device.bus.empty() ? "" : ", " + device.bus), device.problem});
+  }
+  return listing;
+}
 
-Result<std::string> find_v4l2_node(V4l2Io& io, const V4l2Folders& folders, const std::string& serial, V4l2Role role) {
+CameraListing list_v4l2_cameras(const SystemFolders& folders) { return list_v4l2_cameras(*make_system_v4l2_io(), folders); }
+
+Result<std::string> find_v4l2_node(V4l2Io& io, const SystemFolders& folders, const std::string& serial, V4l2Role role) {
   const V4l2DeviceInfo* best = nullptr;
   int best_fitness = 0;
   std::string others;

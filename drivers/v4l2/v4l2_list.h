@@ -9,16 +9,12 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "drivers/camera_listing.h"
+#include "drivers/usb_devices.h"
 #include "drivers/v4l2/v4l2_device.h"
 #include "drivers/v4l2/v4l2_pixel_format.h"
 
 namespace camloc {
-
-/// Where the kernel's and udev's trees are; tests have their own.
-struct V4l2Folders {
-  std::string dev = "/dev";
-  std::string sys = "/sys";
-};
 
 struct V4l2DeviceInfo {
   std::string path;      ///< /dev/videoN
@@ -34,14 +30,17 @@ struct V4l2DeviceInfo {
 
 /// Every node that gives images, in the order of their numbers, and those that could not be asked (with `problem`). Nodes for
 /// metadata or output are left out. A camera in use is listed, too.
-[[nodiscard]] std::vector<V4l2DeviceInfo> list_v4l2_devices();
-[[nodiscard]] std::vector<V4l2DeviceInfo> list_v4l2_devices(V4l2Io& io, const V4l2Folders& folders);
+[[nodiscard]] std::vector<V4l2DeviceInfo> list_v4l2_devices(V4l2Io& io, const SystemFolders& folders);
+
+/// The same for people. A device with a serial is named by it, whichever node it gets.
+[[nodiscard]] CameraListing list_v4l2_cameras(V4l2Io& io, const SystemFolders& folders);
+[[nodiscard]] CameraListing list_v4l2_cameras(const SystemFolders& folders);
 
 /// What /sys says about the node `path`, which may be a link: `path` as /dev/videoN, serial, by_id, usb_node.
-[[nodiscard]] V4l2DeviceInfo describe_v4l2_node(const std::string& path, const V4l2Folders& folders);
+[[nodiscard]] V4l2DeviceInfo describe_v4l2_node(const std::string& path, const SystemFolders& folders);
 
 /// The node of the device with this serial that fits the role best: for images one with colour before infrared, for depth one
 /// with Z16 or 11-bit disparity before one whose 16-bit words may be infrared. kUnavailable lists the serials there are.
-[[nodiscard]] Result<std::string> find_v4l2_node(V4l2Io& io, const V4l2Folders& folders, const std::string& serial, V4l2Role role);
+[[nodiscard]] Result<std::string> find_v4l2_node(V4l2Io& io, const SystemFolders& folders, const std::string& serial, V4l2Role role);
 
 }  // namespace camloc

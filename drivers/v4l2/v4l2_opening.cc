@@ -14,7 +14,7 @@ namespace camloc {
 namespace {
 
 /// The path of a node that may be named by its serial.
-Result<std::string> resolve_node(V4l2Io& io, const V4l2Folders& folders, const V4l2NodeSettings& node) {
+Result<std::string> resolve_node(V4l2Io& io, const SystemFolders& folders, const V4l2NodeSettings& node) {
   constexpr std::string_view kSerial = "serial:";
   if (!node.node.starts_with(kSerial)) return node.node;
   return find_v4l2_node(io, folders, node.node.substr(kSerial.size()), node.wish.role);
@@ -40,7 +40,7 @@ V4l2Role role_of_only_node(const V4l2Device& device, const V4l2Wish& wish) {
   return gives_depth ? V4l2Role::kDepth : V4l2Role::kImage;
 }
 
-Status no_node_named(const SourceUrl& url, V4l2Io& io, const V4l2Folders& folders) {
+Status no_node_named(const SourceUrl& url, V4l2Io& io, const SystemFolders& folders) {
   std::string there;
   for (const V4l2DeviceInfo& node : list_v4l2_devices(io, folders))
     there += (there.empty() ? "" : ", ") + node.path + " '" + node.name + "'";
@@ -50,7 +50,7 @@ Status no_node_named(const SourceUrl& url, V4l2Io& io, const V4l2Folders& folder
 
 class Opener {
  public:
-  Opener(std::shared_ptr<V4l2Io> io, const V4l2Folders& folders, const SourceUrl& url) : url_(url), folders_(folders) {
+  Opener(std::shared_ptr<V4l2Io> io, const SystemFolders& folders, const SourceUrl& url) : url_(url), folders_(folders) {
     opened_.io = std::move(io);
   }
 
@@ -108,14 +108,14 @@ class Opener {
   }
 
   const SourceUrl& url_;
-  const V4l2Folders& folders_;
+  const SystemFolders& folders_;
   V4l2Opened opened_;
   std::string first_path_;
 };
 
 }  // namespace
 
-Result<V4l2Opened> open_v4l2_nodes(std::shared_ptr<V4l2Io> io, const V4l2Folders& folders, const SourceUrl& url,
+Result<V4l2Opened> open_v4l2_nodes(std::shared_ptr<V4l2Io> io, const SystemFolders& folders, const SourceUrl& url,
                                    const FrameSourceOptions& options) {
   return Opener(std::move(io), folders, url).open(options);
 }

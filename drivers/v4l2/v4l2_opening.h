@@ -27,7 +27,7 @@ struct V4l2Opened {
 };
 
 /// Errors name the node and the reason; see V4l2Device::open(), negotiate_v4l2(), set_v4l2_controls() for their codes.
-[[nodiscard]] Result<V4l2Opened> open_v4l2_nodes(std::shared_ptr<V4l2Io> io, const V4l2Folders& folders, const SourceUrl& url,
+[[nodiscard]] Result<V4l2Opened> open_v4l2_nodes(std::shared_ptr<V4l2Io> io, const SystemFolders& folders, const SourceUrl& url,
                                                  const FrameSourceOptions& options);
 
 }  // namespace camloc

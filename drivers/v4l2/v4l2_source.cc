@@ -230,7 +230,7 @@ class V4l2Source final : public FrameSource {
 
 }  // namespace
 
-Result<std::unique_ptr<FrameSource>> open_v4l2_source_on(std::shared_ptr<V4l2Io> io, const V4l2Folders& folders, const SourceUrl& url,
+Result<std::unique_ptr<FrameSource>> open_v4l2_source_on(std::shared_ptr<V4l2Io> io, const SystemFolders& folders, const SourceUrl& url,
                                                          const FrameSourceOptions& options) {
   Result<V4l2Opened> opened = open_v4l2_nodes(std::move(io), folders, url, options);
   if (!opened) return opened.status();

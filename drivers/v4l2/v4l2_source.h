@@ -21,7 +21,7 @@ namespace camloc {
 /// Nothing is allocated per frame, except by libjpeg for MJPEG.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_v4l2_source(const SourceUrl& url, const FrameSourceOptions& options);
 /// The same on other system calls and trees than the kernel's.
-[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_v4l2_source_on(std::shared_ptr<V4l2Io> io, const V4l2Folders& folders,
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_v4l2_source_on(std::shared_ptr<V4l2Io> io, const SystemFolders& folders,
                                                                        const SourceUrl& url, const FrameSourceOptions& options);
 
 }  // namespace camloc

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/io/camera_file.h"
+#include "drivers/sources.h"
 #include "tests/camera_tool/rendered_board.h"
 #include "tools/camloc-camera/coverage_picture.h"
 

@@ -41,7 +41,7 @@ class ControlSocketTest : public ::testing::Test {
     std::array<pollfd, ControlSocket::kMaxPollFds> fds{};
     const int count = socket_->prepare_poll(fds);
     ::poll(fds.data(), static_cast<nfds_t>(count), 0);
-    socket_->handle(std::span(fds).first(static_cast<std::size_t>(count)), now_ns, [this](ControlCommand) {
+    socket_->handle(std::span(fds).first(static_cast<std::size_t>(count)), now_ns, [this](const ControlRequest&) {
       ++num_handled_;
       return reply_;
     });

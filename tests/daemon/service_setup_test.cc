@@ -44,7 +44,7 @@ TEST(ServiceSetupTest, OptionsFollowTheConfig) {
   EXPECT_FALSE(map.localizer.use_tracking);
   EXPECT_EQ(map.localizer.max_coast_ns, 70'000'000);
   EXPECT_TRUE(map.needs_datum);
-  EXPECT_EQ(publish_options(config).bot_core_channel, "B");
+  EXPECT_EQ(sink_options(config).bot_core_channel, "B");
 }
 
 TEST(ServiceSetupTest, UnknownSchemeIsAConfigurationError) {
@@ -59,8 +59,25 @@ TEST(ServiceSetupTest, UnknownSchemeIsAConfigurationError) {
 
 TEST(ServiceSetupTest, LcmUrlNeedsAProvider) {
   Config config;
-  config.publish_lcm_url = "239.255.76.67";
-  EXPECT_FALSE(check_settings(config));
+  for (const char* url : {"239.255.76.67", "nonsense://x", "://"}) {
+    config.publish_lcm_url = url;
+    const Status status = check_settings(config);
+    EXPECT_EQ(status.code(), ErrorCode::kInvalid) << url;
+    EXPECT_NE(status.message().find("publish.lcm_url: '" + std::string(url) + "' has no provider"), std::string::npos) << status.message();
+  }
+}
+
+TEST(ServiceSetupTest, HintsOverLcmStayOnThisMachine) {
+  Config config;
+  config.control_hint_channel = "CAMLOC_HINT";
+  EXPECT_TRUE(check_settings(config)) << "the default URL has ttl=0";
+  for (const char* url : {"udpm://239.255.76.67:7667?ttl=1", "udpm://239.255.76.67:7667", "udpm://239.255.76.67:7667?ttl=00",
+                          "udpm://239.255.76.67:7667?ttl=0&ttl=1", "tcpq://localhost:7700?ttl=0"}) {
+    config.publish_lcm_url = url;
+    const Status status = check_settings(config);
+    EXPECT_EQ(status.code(), ErrorCode::kInvalid) << url;
+    EXPECT_NE(status.message().find("control.hint_channel"), std::string::npos) << status.message();
+  }
 }
 
 TEST(ServiceSetupTest, SourceOwnCalibrationIsUsed) {

@@ -5,19 +5,13 @@
 #include "daemon/service.h"
 
 #include <gtest/gtest.h>
-#include <net/if.h>
-#include <net/route.h>
-#include <netinet/in.h>
-#include <sched.h>
-#include <sys/ioctl.h>
-#include <sys/socket.h>
 
-#include <cstring>
 #include <deque>
 #include <thread>
 
-#include "drivers/frame_source.h"
 #include "drivers/sample_source.h"
+#include "drivers/sources.h"
+#include "tests/daemon/private_network.h"
 #include "tests/daemon/process_allocations.h"
 #include "tests/daemon/sample_map.h"
 #include "tests/daemon/test_folder.h"
@@ -27,31 +21,6 @@ namespace {
 
 using testing::SampleMapOptions;
 using testing::TestFolder;
-
-/// Multicast on a loop-back of our own, so that messages are really sent and reach nobody. False where not permitted.
-bool enter_private_network() {
-  if (::unshare(CLONE_NEWNET) != 0) return false;
-  const UniqueFd control(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-  ifreq interface {};
-  std::strcpy(interface.ifr_name, "lo");
-  interface.ifr_flags = IFF_UP | IFF_RUNNING;
-  if (::ioctl(control.get(), SIOCSIFFLAGS, &interface) != 0) return false;
-  const auto address = [](std::uint32_t value) {
-    sockaddr_in ipv4{};
-    ipv4.sin_family = AF_INET;
-    ipv4.sin_addr.s_addr = htonl(value);
-    sockaddr generic{};
-    std::memcpy(&generic, &ipv4, sizeof(generic));
-    return generic;
-  };
-  rtentry route{};
-  route.rt_dst = address(0xe0000000);
-  route.rt_genmask = address(0xf0000000);
-  route.rt_flags = RTF_UP;
-  char device[] = "lo";
-  route.rt_dev = device;
-  return ::ioctl(control.get(), SIOCADDRT, &route) == 0;
-}
 
 /// Frames of another size than they were announced with.
 class LyingSource : public FrameSource {
@@ -145,7 +114,7 @@ TEST_F(ServiceTest, FramesAllocateNothing) {
   bool has_network = false;
   // The namespace is the thread's own; the other tests keep theirs.
   std::thread([&] {
-    has_network = enter_private_network();
+    has_network = testing::enter_private_network();
     if (!has_network) return;
     Service service(inputs_);
     if (!service.start()) return;

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "core/geometry/gravity.h"
-#include "drivers/frame_source.h"
 #include "drivers/kinect/kinect_motor.h"
+#include "drivers/sources.h"
 
 namespace camloc::kinect {
 namespace {

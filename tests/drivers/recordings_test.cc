@@ -6,7 +6,7 @@
 #include <chrono>
 
 #include "core/io/sequence.h"
-#include "drivers/frame_source.h"
+#include "drivers/sources.h"
 #include "tests/drivers/test_folder.h"
 
 namespace camloc {

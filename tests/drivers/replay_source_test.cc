@@ -4,7 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "drivers/frame_source.h"
+#include "drivers/sources.h"
 #include "tests/drivers/test_folder.h"
 
 namespace camloc {

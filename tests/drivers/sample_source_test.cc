@@ -8,6 +8,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "drivers/sources.h"
+
 namespace camloc {
 namespace {
 

@@ -47,7 +47,7 @@ class V4l2List : public ::testing::Test {
 
   TestFolder folder_;
   FakeV4l2 io_;
-  V4l2Folders folders_{folder_ / "dev", folder_ / "sys"};
+  SystemFolders folders_{folder_.path()};
 };
 
 TEST_F(V4l2List, NodesWithSerialsInTheOrderOfTheirNumbers) {
@@ -56,13 +56,13 @@ TEST_F(V4l2List, NodesWithSerialsInTheOrderOfTheirNumbers) {
   EXPECT_EQ(nodes[0].path, node("video0"));
   EXPECT_EQ(nodes[0].serial, "ABC123");
   EXPECT_EQ(nodes[0].driver, "fake");
-  EXPECT_EQ(nodes[0].usb_node, folders_.dev + "/bus/usb/001/007");
+  EXPECT_EQ(nodes[0].usb_node, folders_.path("/dev") + "/bus/usb/001/007");
   EXPECT_EQ(offers_line(nodes[0].formats), "Z16 640x480 (30 Hz)");
   EXPECT_EQ(nodes[2].path, node("video4"));
   EXPECT_EQ(nodes[2].name, "Web?cam");
   EXPECT_EQ(nodes[2].serial, "");
   EXPECT_EQ(nodes[3].path, node("video10"));
-  EXPECT_EQ(nodes[3].by_id, folders_.dev + "/v4l/by-id/usb-Depth_ABC123-video-index0");
+  EXPECT_EQ(nodes[3].by_id, folders_.path("/dev") + "/v4l/by-id/usb-Depth_ABC123-video-index0");
   EXPECT_EQ(io_.num_open(), 0);
 }
 
@@ -73,7 +73,19 @@ TEST_F(V4l2List, NodesThatCannotBeOpenedSayWhy) {
   EXPECT_NE(nodes[2].problem.find("No such device"), std::string::npos) << nodes[2].problem;
 }
 
-TEST_F(V4l2List, NothingThere) { EXPECT_TRUE(list_v4l2_devices(io_, {folder_ / "none", folder_ / "none"}).empty()); }
+TEST_F(V4l2List, NothingThere) { EXPECT_TRUE(list_v4l2_devices(io_, {folder_ / "none"}).empty()); }
+
+TEST_F(V4l2List, CamerasForPeople) {
+  io_.node(node("video4")).faults.is_gone = true;
+  const CameraListing listing = list_v4l2_cameras(io_, folders_);
+  ASSERT_EQ(listing.cameras.size(), 4U);
+  EXPECT_EQ(listing.cameras[0].url, "v4l2://serial:ABC123");
+  EXPECT_EQ(listing.cameras[0].where.rfind(node("video0"), 0), 0U) << listing.cameras[0].where;
+  EXPECT_EQ(listing.cameras[0].problem, "");
+  EXPECT_EQ(listing.cameras[2].url, "v4l2://" + node("video4")) << "no serial";
+  EXPECT_NE(listing.cameras[2].problem.find("No such device"), std::string::npos);
+  EXPECT_TRUE(list_v4l2_cameras(SystemFolders{"/no/such/root"}).cameras.empty());
+}
 
 TEST_F(V4l2List, SerialAndRoleFindANode) {
   EXPECT_EQ(*find_v4l2_node(io_, folders_, "ABC123", V4l2Role::kImage), node("video10")) << "colour before infrared";
@@ -89,7 +101,7 @@ TEST_F(V4l2List, SerialAndRoleFindANode) {
 }
 
 TEST_F(V4l2List, LinksAreFollowed) {
-  const V4l2DeviceInfo info = describe_v4l2_node(folders_.dev + "/v4l/by-id/usb-Depth_ABC123-video-index0", folders_);
+  const V4l2DeviceInfo info = describe_v4l2_node(folders_.path("/dev") + "/v4l/by-id/usb-Depth_ABC123-video-index0", folders_);
   EXPECT_EQ(info.path, node("video10"));
   EXPECT_EQ(info.serial, "ABC123");
   EXPECT_EQ(describe_v4l2_node("/dev/nosuch", folders_).path, "/dev/nosuch");

@@ -62,7 +62,7 @@ class V4l2Source : public ::testing::Test {
   }
 
   TestFolder folder_;
-  V4l2Folders folders_{folder_ / "dev", folder_ / "sys"};
+  SystemFolders folders_{folder_.path()};
   std::shared_ptr<FakeV4l2> io_ = std::make_shared<FakeV4l2>();
   FakeNode& color_ = io_->add(kColor);
   FakeNode& depth_ = io_->add(kDepth);
@@ -435,7 +435,7 @@ TEST_F(V4l2Source, ResetOfTheUsbDevice) {
   EXPECT_EQ(source_->info().serial, "S1");
   EXPECT_EQ(source_->reset_device().code(), ErrorCode::kUnsupported) << "no right to open it";
   ASSERT_EQ(next(), ErrorCode::kOk);
-  FakeNode& usb = io_->add(folders_.dev + "/bus/usb/003/014");
+  FakeNode& usb = io_->add(folders_.path("/dev") + "/bus/usb/003/014");
   EXPECT_TRUE(source_->reset_device());
   EXPECT_EQ(usb.num_resets, 1);
   EXPECT_EQ(io_->num_mapped(), 0U);

@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "drivers/frame_source.h"
+#include "drivers/sources.h"
 
 namespace {
 

@@ -133,7 +133,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size < 1) return 0;
   const auto driver = std::make_shared<HostileDriver>(data + 1, size - 1);
   const camloc::Result<camloc::SourceUrl> url = camloc::parse_source_url(kUrls[data[0] % std::size(kUrls)]);
-  const camloc::V4l2Folders nowhere{"/nosuch", "/nosuch"};
+  const camloc::SystemFolders nowhere{"/nosuch"};
   auto source = camloc::open_v4l2_source_on(driver, nowhere, *url, {.wants_color = data[0] >= 128});
   if (!source) {
     require(source.status().message().find('\n') == std::string::npos);

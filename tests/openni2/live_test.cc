@@ -17,8 +17,8 @@
 #include <memory>
 #include <thread>
 
-#include "drivers/frame_source.h"
 #include "drivers/openni2/installation.h"
+#include "drivers/sources.h"
 #include "tests/drivers/test_folder.h"
 #include "tests/fakes/openni2_synthetic.h"
 #include "tests/openni2/thread_allocations.h"

@@ -14,6 +14,7 @@
 
 #include "core/base/unique_fd.h"
 #include "core/io/image_writer.h"
+#include "drivers/sources.h"
 #include "tests/drivers/test_folder.h"
 #include "tests/openni2/oni_writer.h"
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The pure parts of the OpenNI2 driver: pixels, compressed depth, choice of modes.
+// The pure parts of the OpenNI2 driver: pixels, compressed depth, choice of modes, what is said of an installation.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -9,6 +9,7 @@
 
 #include "drivers/openni2/depth_codec.h"
 #include "drivers/openni2/field_of_view.h"
+#include "drivers/openni2/installation.h"
 #include "drivers/openni2/pixel_layout.h"
 #include "drivers/openni2/video_mode.h"
 
@@ -144,6 +145,34 @@ TEST(OniFieldOfView, RefusesWhatIsNoCamera) {
   ASSERT_TRUE(camera);
   EXPECT_FALSE(camera->is_depth_registered);  // the same view in other pixels
   EXPECT_NEAR(camera->depth.fx * 2, camera->color.fx, 1e-9);
+}
+
+TEST(OniListing, SaysWhichPartOfTheInstallationIsMissing) {
+  Openni2Installation openni2;
+  const auto expect = [&openni2](const std::string& problem, const std::string& advice) {
+    const CameraListing listing = listing_of(openni2);
+    EXPECT_EQ(listing.problem.empty(), problem.empty()) << listing.problem;
+    EXPECT_NE(listing.problem.find(problem), std::string::npos) << listing.problem;
+    EXPECT_NE(listing.advice.find(advice), std::string::npos) << listing.advice;
+    return listing;
+  };
+  openni2.problem = "libOpenNI2.so.0 is not installed";
+  expect("not installed", "apt install libopenni2-0");
+  openni2.is_library_found = openni2.is_started = true;
+  openni2.problem = "";
+  openni2.drivers_folder = "/usr/lib/OpenNI2/Drivers";
+  openni2.drivers = {{"libPS1080.so.0", false, "cannot be loaded"}};
+  expect("no driver in /usr/lib/OpenNI2/Drivers", "lib*.so.0");
+  openni2.drivers[0] = {"libPS1080.so.0", true, ""};
+  openni2.version = "2.2.0.33";
+  const CameraListing none = expect("", "kinect://");
+  EXPECT_TRUE(none.cameras.empty());
+  EXPECT_EQ(none.searched, "OpenNI2 2.2.0.33, 1 drivers in /usr/lib/OpenNI2/Drivers");
+  openni2.devices = {{"1d27/0601@1/4", "PrimeSense", "Xtion", "1d27:0601"}};
+  const CameraListing listing = expect("", "");
+  ASSERT_EQ(listing.cameras.size(), 1U);
+  EXPECT_EQ(listing.cameras[0].url, "openni2://1d27/0601@1/4");
+  EXPECT_EQ(listing.cameras[0].name, "PrimeSense Xtion");
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ done
 offers "camloc " bench sim
 
 # Values. The list of schemes is the daemon's own.
-schemes=$("$CAMLOCD" --config /dev/null --set source.url=nothing://x --check-config 2>&1 | sed -n 's/.*it knows //p' | tr -d ',')
+schemes=$("$CAMLOCD" --config /dev/null --set source.url=nothing://x --check-config 2>&1 | sed -n 's/.*it knows //p' | tr -d ',:/')
 [[ -n $schemes ]] || fail "camlocd does not say which frame sources it knows"
 for scheme in $schemes; do offers "camloc localize --sequence ${scheme:0:2}" "$scheme://"; done
 is_exactly "camlocd --set source.url=rep" "replay://"

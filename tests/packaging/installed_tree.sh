@@ -27,7 +27,7 @@ export PKG_CONFIG_PATH=$scratch/root/usr/share/pkgconfig
 types=$(pkg-config --variable=lcmtypesdir camloc-lcmtypes)
 [[ $types == /usr/share/camloc/lcmtypes ]] || fail "pkg-config says lcmtypesdir=$types"
 lcm-gen -x --cpp-hpath="$scratch/generated" "$scratch/root$types"/*.lcm || fail "lcm-gen refuses the message types"
-for type in pose_t status_t; do [[ -s $scratch/generated/camloc/$type.hpp ]] || fail "no header for $type"; done
+for type in pose_t status_t pose_hint_t; do [[ -s $scratch/generated/camloc/$type.hpp ]] || fail "no header for $type"; done
 
 # Nothing refers to the folders it was built in.
 if grep -rlIF -e "$build" -e "$source_folder" .; then fail "the files above name the build or source folder"; fi

@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Prints what arrives over LCM, one line of "key=value" words a message, for the scenario tests.
-// Usage: lcm_tap SECONDS [MAX_POSES]   ends after that time, or that many poses
+// Usage: lcm_tap SECONDS [MAX_POSES]              ends after that time, or that many poses
+//        lcm_tap hint X Y Z YAW_RAD RADIUS AGE_S   sends a hint that was true some seconds ago
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <lcm/lcm-cpp.hpp>
 
 #include "bot_core/pose_t.hpp"
+#include "camloc/pose_hint_t.hpp"
 #include "camloc/pose_t.hpp"
 #include "camloc/status_t.hpp"
 
@@ -41,10 +45,22 @@ struct Tap {
   }
 };
 
+int send_hint(char** numbers) {
+  lcm::LCM lcm("udpm://239.255.76.67:7667?ttl=0");
+  const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
+  camloc::pose_hint_t hint{};
+  for (int axis = 0; axis < 3; ++axis) hint.pos[axis] = std::atof(numbers[axis]);
+  hint.yaw_rad = std::atof(numbers[3]);
+  hint.radius_m = std::atof(numbers[4]);
+  hint.utime = std::chrono::duration_cast<std::chrono::microseconds>(since_epoch).count() - std::llround(1e6 * std::atof(numbers[5]));
+  return lcm.good() && lcm.publish("CAMLOC_HINT", &hint) == 0 ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc < 2) return 2;
+  if (std::strcmp(argv[1], "hint") == 0) return argc == 8 ? send_hint(argv + 2) : 2;
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   const double seconds = std::atof(argv[1]);
   const long max_poses = argc > 2 ? std::atol(argv[2]) : 0;

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/frame_source.h"
+#include "drivers/sources.h"
 #include "tools/recording/recording_folder.h"
 
 namespace camloc::tools {

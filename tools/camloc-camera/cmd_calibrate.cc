@@ -11,6 +11,7 @@
 #include "core/io/camera_file.h"
 #include "core/io/image_writer.h"
 #include "core/io/replace_file.h"
+#include "drivers/sources.h"
 #include "tools/camloc-camera/calibration.h"
 #include "tools/camloc-camera/commands.h"
 #include "tools/camloc-camera/coverage_picture.h"

@@ -11,12 +11,10 @@
 
 #include "core/io/camera_file.h"
 #include "core/io/replace_file.h"
-#include "drivers/openni2/installation.h"
-#include "drivers/v4l2/v4l2_list.h"
+#include "drivers/sources.h"
 #include "tools/camloc/commands.h"
 #include "tools/common/output_path.h"
 #include "tools/common/text_format.h"
-#include "tools/doctor/usb_devices.h"
 
 namespace camloc::tools {
 namespace {
@@ -94,56 +92,23 @@ Status import(const CameraArguments& arguments) {
   return Status::ok();
 }
 
-struct FoundCamera {
-  std::string url, name, where, problem;
-};
-
-std::vector<FoundCamera> find_kinects() {
-  std::vector<FoundCamera> cameras;
-  const std::vector<UsbDevice> devices = list_usb_devices();
-  for (const UsbDevice& device : devices) {
-    if (role_of(device) != UsbRole::kKinectCamera) continue;
-    const std::string serial = kinect_serial(device, devices);
-    const std::string url = "kinect://" + (serial.empty() ? std::to_string(cameras.size()) : serial);
-    cameras.push_back({url, device.product == 0x02bf ? "Kinect for Windows V1" : "Kinect V1", "USB " + device.name, ""});
-  }
-  return cameras;
-}
-
-std::vector<FoundCamera> find_v4l2() {
-  std::vector<FoundCamera> cameras;
-  for (const V4l2DeviceInfo& device : list_v4l2_devices()) {
-    cameras.push_back({device.serial.empty() ? "v4l2://" + device.path : "v4l2://serial:" + device.serial, device.name,
-                       device.path + (device.bus.empty() ? "" : ", " + device.bus), device.problem});
-  }
-  return cameras;
-}
-
-std::vector<FoundCamera> find_openni2(const Openni2Installation& openni2) {
-  std::vector<FoundCamera> cameras;
-  for (const Openni2Device& device : openni2.devices) {
-    cameras.push_back({"openni2://" + device.uri, device.vendor + " " + device.name, "USB id " + device.usb_id, ""});
-  }
-  return cameras;
-}
-
 Status list(const CameraArguments& arguments) {
-  const Openni2Installation openni2 = inspect_openni2();
-  std::vector<FoundCamera> cameras = find_kinects();
-  for (const std::vector<FoundCamera>& family : {find_v4l2(), find_openni2(openni2)})
-    cameras.insert(cameras.end(), family.begin(), family.end());
-  if (arguments.is_json) {
-    nlohmann::ordered_json document{{"cameras", nlohmann::ordered_json::array()}, {"openni2_problem", openni2.problem}};
-    for (const FoundCamera& camera : cameras)
+  nlohmann::ordered_json document{{"cameras", nlohmann::ordered_json::array()}};
+  std::string table;
+  for (const SourceEntry& source : frame_sources()) {
+    if (source.list == nullptr) continue;
+    const CameraListing listing = source.list({});
+    for (const FoundCamera& camera : listing.cameras) {
       document["cameras"].push_back({{"url", camera.url}, {"name", camera.name}, {"where", camera.where}, {"problem", camera.problem}});
-    std::printf("%s\n", document.dump(1, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
-  } else {
-    for (const FoundCamera& camera : cameras)
-      std::printf("%-32s %s (%s)%s%s\n", camera.url.c_str(), camera.name.c_str(), camera.where.c_str(), camera.problem.empty() ? "" : ": ",
-                  camera.problem.c_str());
-    if (!openni2.problem.empty()) std::printf("%-32s %s\n", "openni2://", openni2.problem.c_str());
+      append_text(&table, "%-32s %s (%s)%s%s\n", camera.url.c_str(), camera.name.c_str(), camera.where.c_str(),
+                  camera.problem.empty() ? "" : ": ", camera.problem.c_str());
+    }
+    document[std::string(source.scheme) + "_problem"] = listing.problem;
+    if (!listing.problem.empty()) append_text(&table, "%-32s %s\n", (std::string(source.scheme) + "://").c_str(), listing.problem.c_str());
   }
-  if (!cameras.empty()) return Status::ok();
+  if (arguments.is_json) table = document.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  std::fputs(table.c_str(), stdout);
+  if (!document["cameras"].empty()) return Status::ok();
   return {ErrorCode::kUnavailable, "no camera found; is it plugged in and powered? 'camloc doctor' looks closer"};
 }
 

@@ -1,19 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// `camloc ctl`: asks a running camlocd for its status, to reload its map, to forget its pose.
+// `camloc ctl`: asks a running camlocd for its status, to reload its map, to forget its pose, and tells it where the camera is about.
 #include <cstdio>
 #include <memory>
 #include <string>
 
 #include "tools/camloc/commands.h"
 #include "tools/common/control_client.h"
+#include "tools/common/text_format.h"
 
 namespace camloc::tools {
 namespace {
 
 struct CtlOptions {
-  std::string command;
+  std::string command;  // a whole line, of which the first word names it
+  double x_m = 0, y_m = 0, z_m = 0, yaw_deg = 0, radius_m = 0;
   std::string socket_path = kDefaultControlSocket;
   bool is_json = false;
   int timeout_ms = 10000;
@@ -34,6 +36,7 @@ void print_table(const nlohmann::ordered_json& object, const std::string& prefix
 }
 
 int run(const CtlOptions& options) {
+  const std::string name = options.command.substr(0, options.command.find(' '));
   const auto answer = control_request(options.socket_path, options.command, std::chrono::milliseconds(options.timeout_ms));
   if (!answer) return report(answer.status());
   const bool is_ok = answer->value("ok", false);
@@ -41,9 +44,9 @@ int run(const CtlOptions& options) {
     std::printf("%s\n", answer->dump().c_str());
   } else if (!is_ok) {
     const std::string why = answer->contains("error") ? plain_text((*answer)["error"]) : "no reason given";
-    return report({ErrorCode::kUnavailable, options.command + " refused: " + why});
+    return report({ErrorCode::kUnavailable, name + " refused: " + why});
   } else if (answer->size() <= 1) {
-    std::printf("%s: done\n", options.command.c_str());
+    std::printf("%s: done\n", name.c_str());
   } else {
     print_table(*answer, "");
   }
@@ -54,7 +57,7 @@ int run(const CtlOptions& options) {
 
 void add_ctl_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<CtlOptions>();
-  CLI::App* ctl = app.add_subcommand("ctl", "Ask a running camlocd: status, reload, reset");
+  CLI::App* ctl = app.add_subcommand("ctl", "Ask a running camlocd: status, reload, reset, hint");
   ctl->require_subcommand(1);
   ctl->fallthrough();
   ctl->add_option("--socket", options->socket_path, "control socket of camlocd")->capture_default_str();
@@ -71,6 +74,17 @@ void add_ctl_command(CLI::App& app, int& exit_code) {
   add("status", "state, map, source, counters");
   add("reload", "open the map again; a bad one is refused and the old one kept");
   add("reset", "forget the last pose and search the whole map");
+  CLI::App* hint = ctl->add_subcommand("hint", "tell where the camera is about, in the map's frame: a place to look first, never evidence");
+  hint->add_option("X", options->x_m, "metres")->required();
+  hint->add_option("Y", options->y_m, "metres")->required();
+  hint->add_option("Z", options->z_m, "metres")->required();
+  hint->add_option("YAW", options->yaw_deg, "heading of the optical axis about the map's z axis, from x towards y, degrees")->required();
+  hint->add_option("RADIUS", options->radius_m, "the camera is this near to X Y Z, metres; above 0, at most 20")->required();
+  hint->callback([options, &exit_code] {
+    options->command =
+        text_of("hint %.9g %.9g %.9g %.9g %.9g", options->x_m, options->y_m, options->z_m, options->yaw_deg, options->radius_m);
+    exit_code = run(*options);
+  });
 }
 
 }  // namespace camloc::tools

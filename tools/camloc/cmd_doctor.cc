@@ -29,29 +29,26 @@ struct DoctorOptions {
 
 const char* to_string(Level level) { return level == Level::kOk ? "ok" : level == Level::kWarning ? "warn" : "FAIL"; }
 
-bool is_of_a_camera(const UsbDevice& device) { return role_of(device) != UsbRole::kNone; }
-bool is_camera(const UsbDevice& device) { return role_of(device) == UsbRole::kKinectCamera || role_of(device) == UsbRole::kOpenni2Camera; }
-
 gid_t group_of_devices() {
   const group* plugdev = ::getgrnam("plugdev");
   return plugdev == nullptr ? static_cast<gid_t>(-1) : plugdev->gr_gid;
 }
 
-/// Cameras on USB, where there are any or the source needs one.
-void examine_usb(const Settings& settings, const DaemonAnswer& daemon, std::vector<Check>* checks) {
+/// The kind of camera that is the source, and those of which something is on USB.
+void examine_cameras(const Settings& settings, const DaemonAnswer& daemon, std::vector<Check>* checks) {
   const SystemFolders folders;
   const std::string scheme = settings.scheme();
   const std::vector<UsbDevice> devices = list_usb_devices(folders);
-  if (std::any_of(devices.begin(), devices.end(), is_of_a_camera) || scheme == "kinect")
-    checks->push_back(check_usb_presence(devices, scheme));
-  if (std::any_of(devices.begin(), devices.end(), is_camera)) {
-    checks->push_back(check_usb_rights(devices, folders, group_of_devices()));
-    checks->push_back(check_usb_driver(devices, scheme, daemon.has_value()));
-    checks->push_back(check_usb_bandwidth(devices, folders));
+  for (const SourceEntry& source : frame_sources()) {
+    const bool is_wanted = scheme == source.scheme;
+    const auto is_of_source = [&](const UsbDevice& device) { return find_usb_source(device) == &source; };
+    if (source.list != nullptr && (is_wanted || std::any_of(devices.begin(), devices.end(), is_of_source)))
+      checks->push_back(check_presence(source, source.list(folders), is_wanted));
   }
-  const auto is_openni2 = [](const UsbDevice& device) { return role_of(device) == UsbRole::kOpenni2Camera; };
-  if (scheme == "openni2" || std::any_of(devices.begin(), devices.end(), is_openni2))
-    checks->push_back(check_openni2(inspect_openni2(), scheme));
+  if (std::none_of(devices.begin(), devices.end(), [](const UsbDevice& device) { return is_usb_camera(device); })) return;
+  checks->push_back(check_usb_rights(devices, folders, group_of_devices()));
+  checks->push_back(check_usb_driver(devices, scheme, daemon.has_value()));
+  checks->push_back(check_usb_bandwidth(devices, folders));
 }
 
 void examine_service(std::vector<Check>* checks) {
@@ -78,7 +75,7 @@ std::vector<Check> examine(const DoctorOptions& options) {
   examine_service(&checks);
   checks.push_back(check_daemon(settings.socket_path, &daemon));
   checks.push_back(check_map(settings.map_path));
-  examine_usb(settings, daemon, &checks);
+  examine_cameras(settings, daemon, &checks);
   checks.push_back(check_source(settings.source_url, daemon, &size));
   checks.push_back(check_calibration(settings.camera_path, daemon, size));
   checks.push_back(check_lcm(settings.lcm_url));

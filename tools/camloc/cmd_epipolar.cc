@@ -11,6 +11,7 @@
 
 #include "core/base/order_statistics.h"
 #include "core/io/camera_file.h"
+#include "drivers/sources.h"
 #include "tools/camloc/commands.h"
 #include "tools/common/frame_reading.h"
 #include "tools/common/terminal_observer.h"

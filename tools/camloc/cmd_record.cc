@@ -11,6 +11,7 @@
 
 #include "core/io/camera_file.h"
 #include "drivers/source_url.h"
+#include "drivers/sources.h"
 #include "tools/camloc/commands.h"
 #include "tools/common/command_line.h"
 #include "tools/common/interrupt.h"

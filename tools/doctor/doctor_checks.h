@@ -13,10 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "drivers/openni2/installation.h"
+#include "drivers/sources.h"
 #include "tools/common/control_client.h"
 #include "tools/doctor/multicast_route.h"
-#include "tools/doctor/usb_devices.h"
 
 namespace camloc::tools {
 
@@ -52,12 +51,12 @@ struct FrameSize {
 [[nodiscard]] Check check_calibration(const std::string& path, const DaemonAnswer& daemon, const std::optional<FrameSize>& size);
 
 // doctor_usb.cc: what is plugged in; `scheme` is that of the source
-[[nodiscard]] Check check_usb_presence(const std::vector<UsbDevice>& devices, const std::string& scheme);
+/// Whether a kind of camera is there; `is_wanted`: it is the source.
+[[nodiscard]] Check check_presence(const SourceEntry& source, const CameraListing& listing, bool is_wanted);
 /// Whether camlocd may open the cameras: `service_group` is the group of the devices that it is in (plugdev).
 [[nodiscard]] Check check_usb_rights(const std::vector<UsbDevice>& devices, const SystemFolders& folders, gid_t service_group);
 [[nodiscard]] Check check_usb_driver(const std::vector<UsbDevice>& devices, const std::string& scheme, bool is_daemon_running);
 [[nodiscard]] Check check_usb_bandwidth(const std::vector<UsbDevice>& devices, const SystemFolders& folders);
-[[nodiscard]] Check check_openni2(const Openni2Installation& openni2, const std::string& scheme);
 
 // doctor_system.cc: what it runs on
 [[nodiscard]] Check check_daemon(const std::string& socket_path, DaemonAnswer* daemon);

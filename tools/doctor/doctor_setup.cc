@@ -9,8 +9,8 @@
 
 #include "core/io/camera_file.h"
 #include "core/map/map_view.h"
-#include "drivers/frame_source.h"
 #include "drivers/source_url.h"
+#include "drivers/sources.h"
 #include "tools/common/program.h"
 #include "tools/common/text_format.h"
 #include "tools/doctor/doctor_checks.h"
@@ -33,12 +33,6 @@ void read_settings(const std::string& config_text, Settings* settings) {
 }
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
-std::string known_schemes() {
-  std::string text;
-  for (const auto& scheme : frame_source_schemes()) text += (text.empty() ? "" : ", ") + scheme.scheme + "://";
-  return text;
-}
 
 }  // namespace
 
@@ -78,18 +72,14 @@ Check check_map(const std::string& path) {
 Check check_source(const std::string& url, const DaemonAnswer& daemon, std::optional<FrameSize>* size) {
   if (url.empty())
     return {"camera", Level::kFailure, "none configured",
-            "set source.url; 'camloc camera list' shows what is plugged in; this build knows " + known_schemes()};
+            "set source.url; 'camloc camera list' shows what is plugged in, camlocd.toml(5) what else it may be"};
   if (daemon) {
     const bool has_camera = daemon->value("state", std::string()) != "NO_CAMERA";
     if (has_camera) return {"camera", Level::kOk, url + ": in use by camlocd", ""};
     return {"camera", Level::kFailure, url + ": camlocd gets no frames", "see the usb lines; 'journalctl -u camlocd -b' has the reason"};
   }
   auto source = open_frame_source(url);
-  if (!source) {
-    const bool is_unknown = source.status().code() == ErrorCode::kUnsupported;
-    return {"camera", Level::kFailure, source.status().message(),
-            is_unknown ? "this build knows " + known_schemes() : "'camloc camera list' shows what is plugged in"};
-  }
+  if (!source) return {"camera", Level::kFailure, source.status().message(), "'camloc camera list' shows what is plugged in"};
   FrameBuffer frame;
   const Status status = (*source)->next(&frame, std::chrono::seconds(3));
   if (!status) return {"camera", Level::kFailure, url + ": " + status.message(), "check cable, power and permission of the device"};

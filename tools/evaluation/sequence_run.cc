@@ -8,6 +8,7 @@
 
 #include "core/io/camera_file.h"
 #include "core/io/frame_selection.h"
+#include "drivers/sources.h"
 #include "tools/common/command_line.h"
 
 namespace camloc::tools {

@@ -1,8 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// `camloc camera show` and `import`.
+// `camloc camera list`, `show` and `import`.
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
 #include "core/io/camera_file.h"
+#include "drivers/sources.h"
 #include "tests/tools/command_runner.h"
 #include "tools/camloc/commands.h"
 
@@ -46,6 +50,15 @@ TEST(CameraCommandTest, ShowsFieldOfViewAndDepth) {
   EXPECT_NE(output.out.find("field of view 90.0 x 73.7 deg"), std::string::npos) << output.out;
   EXPECT_NE(output.out.find("at -25.0 0.0 0.0 mm"), std::string::npos) << output.out;
   EXPECT_NE(output.out.find("noise 7.0 mm at 1 m, 25.0 mm at 2 m"), std::string::npos) << output.out;
+}
+
+TEST(CameraCommandTest, ListsEveryKindOfCamera) {
+  const CommandOutput output = camera({"list", "--json"});
+  const auto document = nlohmann::json::parse(output.out);
+  EXPECT_TRUE(document["cameras"].is_array());
+  for (const SourceEntry& source : frame_sources())
+    EXPECT_EQ(document.contains(std::string(source.scheme) + "_problem"), source.list != nullptr) << source.scheme;
+  EXPECT_EQ(output.exit_code, document["cameras"].empty() ? 1 : 0) << "no camera is a failure";
 }
 
 }  // namespace

@@ -53,6 +53,23 @@ TEST_F(CtlTest, ResetIsDone) {
   EXPECT_EQ(output.out, "reset: done\n");
 }
 
+TEST_F(CtlTest, AHintIsOneLine) {
+  FakeDaemon daemon(socket_path_, "{\"ok\":true}\n");
+  const CommandOutput output = ctl({"hint", "1.5", "-2", "-0.25", "-90", "3"});
+  EXPECT_EQ(output.exit_code, 0) << output.err;
+  EXPECT_EQ(output.out, "hint: done\n");
+  EXPECT_EQ(daemon.stop(), "hint 1.5 -2 -0.25 -90 3\n");
+}
+
+TEST_F(CtlTest, ARefusedHintIsAFailure) {
+  FakeDaemon daemon(socket_path_, "{\"ok\":false,\"error\":\"no map is open\"}\n");
+  const CommandOutput output = ctl({"hint", "1", "2", "3", "4", "5"});
+  EXPECT_EQ(output.exit_code, 1);
+  EXPECT_EQ(output.err, "camloc: hint refused: no map is open\n");
+  EXPECT_EQ(ctl({"hint", "1", "2", "3", "4"}).exit_code, 2);
+  EXPECT_EQ(ctl({"hint", "1", "2", "3", "4", "x"}).exit_code, 2);
+}
+
 TEST_F(CtlTest, NoDaemonIsOneClearLine) {
   const CommandOutput output = ctl({"status"});
   EXPECT_EQ(output.exit_code, 1);

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "drivers/sample_source.h"
+#include "drivers/sources.h"
 #include "tests/tools/command_runner.h"
 #include "tests/tools/live_source.h"
 #include "tools/camloc/commands.h"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/tools/expect_check.h"
-#include "tests/tools/fake_usb.h"
+#include "tests/drivers/fake_usb.h"
 
 namespace camloc::tools {
 namespace {

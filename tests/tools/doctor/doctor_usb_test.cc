@@ -6,8 +6,8 @@
 
 #include <filesystem>
 
+#include "tests/drivers/fake_usb.h"
 #include "tests/tools/expect_check.h"
-#include "tests/tools/fake_usb.h"
 #include "tools/doctor/doctor_checks.h"
 
 namespace camloc::tools {
@@ -16,14 +16,34 @@ namespace {
 const FakeUsbDevice kKinect{0x045e, 0x02ae, 5};
 const FakeUsbDevice kMotor{0x045e, 0x02b0, 4};
 
+/// What doctor says of a kind of camera on that machine.
+Check presence(const FakeUsb& usb, const std::string& scheme, bool is_wanted) {
+  const SourceEntry& source = **find_source(scheme + "://");
+  return check_presence(source, source.list(usb.folders()), is_wanted);
+}
+
 TEST(DoctorUsbTest, PresenceAndPower) {
   FakeUsb usb;
-  expect(check_usb_presence(list_usb_devices(usb.folders()), "kinect"), Level::kFailure, "no Kinect on 0 USB devices", "lsusb");
+  expect(presence(usb, "kinect", true), Level::kFailure, "no kinect:// camera is there; looked at: 0 USB devices", "lsusb");
   usb.add("1-1.1", kMotor);
-  expect(check_usb_presence(list_usb_devices(usb.folders()), "kinect"), Level::kFailure, "its camera is not", "12 V power supply");
-  expect(check_usb_presence(list_usb_devices(usb.folders()), "replay"), Level::kWarning, "its camera is not", "12 V power supply");
+  expect(presence(usb, "kinect", true), Level::kFailure, "its camera is not", "12 V power supply");
+  expect(presence(usb, "kinect", false), Level::kWarning, "its camera is not", "12 V power supply");
   usb.add("1-1.2", kKinect);
-  expect(check_usb_presence(list_usb_devices(usb.folders()), "kinect"), Level::kOk, "045e:02ae at USB 1-1.2");
+  expect(presence(usb, "kinect", true), Level::kOk, "kinect://0 (USB 1-1.2)");
+  expect(presence(usb, "v4l2", true), Level::kFailure, "no v4l2:// camera is there", "/dev/v4l/by-id");
+}
+
+TEST(DoctorUsbTest, WhatASourceSaysOfItselfIsShown) {
+  const SourceEntry& source = **find_source("openni2://");
+  CameraListing listing{{}, "", "libOpenNI2.so.0 is not installed", "sudo apt install libopenni2-0"};
+  expect(check_presence(source, listing, true), Level::kFailure, "not installed", "apt install libopenni2-0");
+  expect(check_presence(source, listing, false), Level::kWarning, "not installed", "apt");
+  listing = {{}, "OpenNI2 2.2, 1 drivers in /usr/lib", "", "a Kinect V1 is kinect://"};
+  expect(check_presence(source, listing, true), Level::kFailure, "1 drivers in /usr/lib", "kinect://");
+  listing.cameras = {{"openni2://1d27/0601@1/4", "Xtion", "USB id 1d27:0601", ""}};
+  expect(check_presence(source, listing, true), Level::kOk, "1d27/0601@1/4");
+  listing.cameras[0].problem = "no permission";
+  expect(check_presence(source, listing, true), Level::kFailure, "no permission", "kinect://");
 }
 
 TEST(DoctorUsbTest, RightsAreThoseOfTheServiceNotOfWhoeverAsks) {
@@ -78,22 +98,6 @@ TEST(DoctorUsbTest, Bandwidth) {
   usb.add("1-2", slow);
   std::filesystem::remove_all(usb.folders().path("/sys/bus/usb/devices/1-3"));
   expect(check_usb_bandwidth(list_usb_devices(usb.folders()), usb.folders()), Level::kFailure, "12 Mbit/s", "USB 2 port");
-}
-
-TEST(DoctorUsbTest, Openni2FolderOfDrivers) {
-  Openni2Installation openni2;
-  openni2.problem = "libOpenNI2.so.0 is not installed";
-  expect(check_openni2(openni2, "openni2"), Level::kFailure, "not installed", "apt install libopenni2-0");
-  expect(check_openni2(openni2, "kinect"), Level::kWarning, "not installed", "apt");
-  openni2.is_library_found = openni2.is_started = true;
-  openni2.problem = "";
-  openni2.drivers_folder = "/usr/lib/OpenNI2/Drivers";
-  openni2.drivers = {{"libPS1080.so.0", false, "cannot be loaded"}};
-  expect(check_openni2(openni2, "openni2"), Level::kFailure, "no driver in /usr/lib/OpenNI2/Drivers", "lib*.so.0");
-  openni2.drivers[0] = {"libPS1080.so.0", true, ""};
-  expect(check_openni2(openni2, "openni2"), Level::kFailure, "none of them has a device", "kinect://");
-  openni2.devices = {{"1d27/0601@1/4", "PrimeSense", "Xtion", "1d27:0601"}};
-  expect(check_openni2(openni2, "openni2"), Level::kOk, "1d27/0601@1/4");
 }
 
 }  // namespace

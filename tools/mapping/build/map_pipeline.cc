@@ -13,6 +13,7 @@
 
 #include "core/io/replace_file.h"
 #include "core/map/map_writer.h"
+#include "drivers/sources.h"
 #include "tools/common/frame_reading.h"
 #include "tools/common/trajectory_file.h"
 #include "tools/mapping/build/merge_pipeline.h"

@@ -11,7 +11,7 @@
 #include <unordered_map>
 
 #include "core/io/accelerometer.h"
-#include "drivers/frame_source.h"
+#include "drivers/sources.h"
 #include "tools/common/frame_reading.h"
 
 namespace camloc::mapping {

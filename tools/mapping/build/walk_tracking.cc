@@ -12,6 +12,7 @@
 #include <filesystem>
 
 #include "core/io/camera_file.h"
+#include "drivers/sources.h"
 #include "tools/mapping/build/surface_sample.h"
 #include "tools/mapping/build/view_log.h"
 

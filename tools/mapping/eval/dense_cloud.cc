@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "drivers/frame_source.h"
+#include "drivers/sources.h"
 #include "tools/common/frame_reading.h"
 
 namespace camloc::mapping {

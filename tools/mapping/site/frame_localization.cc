@@ -8,7 +8,7 @@
 #include <set>
 
 #include "core/localize/localizer.h"
-#include "drivers/frame_source.h"
+#include "drivers/sources.h"
 #include "tools/common/frame_reading.h"
 
 namespace camloc::mapping {

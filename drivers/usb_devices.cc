@@ -2,37 +2,28 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The files are those of the Linux kernel's Documentation/ABI/stable/sysfs-bus-usb.
-#include "tools/doctor/usb_devices.h"
+#include "drivers/usb_devices.h"
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <tuple>
 
 #include "core/io/text.h"
-#include "tools/common/text_format.h"
 
-namespace camloc::tools {
-namespace {
+namespace camloc {
 
 namespace fs = std::filesystem;
 
+namespace {
+
 constexpr std::size_t kMaxDevices = 1000;
 
-/// The first line of a small file, printable characters only.
-std::string read_attribute(const fs::path& path) {
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  line.resize(std::min<std::size_t>(line.size(), 200));
-  std::erase_if(line, [](char c) { return c < ' ' || c == 127; });
-  return std::string(trimmed(line));
-}
-
 std::optional<std::uint16_t> read_hex(const fs::path& path) {
-  const std::string text = read_attribute(path);
+  const std::string text = read_system_attribute(path);
   std::uint16_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
   return error == std::errc() && end == text.data() + text.size() && !text.empty() ? std::optional(value) : std::nullopt;
@@ -53,7 +44,7 @@ std::vector<std::string> drivers_of(const fs::path& folder, const std::string& n
 
 std::optional<UsbDevice> read_device(const fs::path& folder) {
   const auto vendor = read_hex(folder / "idVendor"), product = read_hex(folder / "idProduct");
-  const auto bus = parse_int(read_attribute(folder / "busnum")), address = parse_int(read_attribute(folder / "devnum"));
+  const auto bus = parse_int(read_system_attribute(folder / "busnum")), address = parse_int(read_system_attribute(folder / "devnum"));
   if (!vendor || !product || !bus || !address || *bus < 1 || *bus > 999 || *address < 1 || *address > 127) return std::nullopt;
   UsbDevice device;
   device.name = folder.filename().string();
@@ -61,39 +52,40 @@ std::optional<UsbDevice> read_device(const fs::path& folder) {
   device.product = *product;
   device.bus = static_cast<int>(*bus);
   device.address = static_cast<int>(*address);
-  device.serial = read_attribute(folder / "serial");
-  device.product_name = read_attribute(folder / "product");
-  device.speed_mbps = parse_double(read_attribute(folder / "speed")).value_or(0);
+  device.serial = read_system_attribute(folder / "serial");
+  device.speed_mbps = parse_double(read_system_attribute(folder / "speed")).value_or(0);
   device.drivers = drivers_of(folder, device.name);
   return device;
 }
 
-bool is_placeholder(const std::string& serial) { return serial.find_first_not_of('0') == std::string::npos; }
-
 }  // namespace
 
-std::string UsbDevice::node() const { return text_of("/dev/bus/usb/%03d/%03d", bus, address); }
-std::string UsbDevice::usb_id() const { return text_of("%04x:%04x", unsigned{vendor}, unsigned{product}); }
+std::string read_system_attribute(const fs::path& path) {
+  std::ifstream file(path);
+  char text[256] = {};
+  file.read(text, sizeof(text) - 1);
+  const std::string_view line = std::string_view(text).substr(0, std::string_view(text).find('\n'));
+  std::string result(trimmed(line));
+  std::replace_if(
+      result.begin(), result.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
+  return result;
+}
+
+std::string UsbDevice::node() const {
+  char text[48];
+  std::snprintf(text, sizeof(text), "/dev/bus/usb/%03d/%03d", bus, address);
+  return text;
+}
+
+std::string UsbDevice::usb_id() const {
+  char text[16];
+  std::snprintf(text, sizeof(text), "%04x:%04x", unsigned{vendor}, unsigned{product});
+  return text;
+}
 
 std::string UsbDevice::hub() const {
   const std::size_t last = name.find_last_of(".-");
   return last == std::string::npos ? "" : name.substr(0, last);
-}
-
-UsbRole role_of(const UsbDevice& device) {
-  constexpr std::uint16_t kMicrosoft = 0x045e, kPrimeSense = 0x1d27, kOrbbec = 0x2bc5;
-  if (device.vendor == kPrimeSense || device.vendor == kOrbbec) return UsbRole::kOpenni2Camera;
-  if (device.vendor != kMicrosoft) return UsbRole::kNone;
-  switch (device.product) {
-    case 0x02ae:
-    case 0x02bf: return UsbRole::kKinectCamera;
-    case 0x02b0: return UsbRole::kKinectMotor;
-    case 0x02ad:
-    case 0x02be:
-    case 0x02c3:
-    case 0x02bb: return UsbRole::kKinectAudio;
-    default: return UsbRole::kNone;
-  }
 }
 
 std::vector<UsbDevice> list_usb_devices(const SystemFolders& folders) {
@@ -108,12 +100,4 @@ std::vector<UsbDevice> list_usb_devices(const SystemFolders& folders) {
   return devices;
 }
 
-std::string kinect_serial(const UsbDevice& camera, const std::vector<UsbDevice>& devices) {
-  if (!is_placeholder(camera.serial)) return camera.serial;
-  for (const UsbDevice& device : devices) {
-    if (role_of(device) == UsbRole::kKinectAudio && device.hub() == camera.hub() && !is_placeholder(device.serial)) return device.serial;
-  }
-  return "";
-}
-
-}  // namespace camloc::tools
+}  // namespace camloc

@@ -5,14 +5,14 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
-#include "tests/tools/command_runner.h"
-#include "tools/doctor/usb_devices.h"
+#include "drivers/usb_devices.h"
+#include "tests/drivers/test_folder.h"
 
-namespace camloc::tools {
+namespace camloc {
 
 struct FakeUsbDevice {
   std::uint16_t vendor = 0, product = 0;
@@ -21,14 +21,19 @@ struct FakeUsbDevice {
   std::string speed = "480";
 };
 
+/// A device of that vendor and product, without anything else.
+inline UsbDevice bare_usb_device(std::uint16_t vendor, std::uint16_t product) {
+  UsbDevice device;
+  device.vendor = vendor;
+  device.product = product;
+  return device;
+}
+
 class FakeUsb {
  public:
   [[nodiscard]] SystemFolders folders() const { return {folder_.path()}; }
 
-  void write(const std::string& path, const std::string& text) const {
-    std::filesystem::create_directories(std::filesystem::path(folder_.path() + path).parent_path());
-    std::ofstream(folder_.path() + path) << text;
-  }
+  void write(const std::string& path, const std::string& text) const { folder_.write(path.substr(1), text); }
   /// `name` as in /sys/bus/usb/devices: "1-2.3". Makes its node in /dev, too.
   void add(const std::string& name, const FakeUsbDevice& device) const {
     char id[8];
@@ -50,7 +55,7 @@ class FakeUsb {
   }
 
  private:
-  TemporaryFolder folder_;
+  TestFolder folder_;
 };
 
-}  // namespace camloc::tools
+}  // namespace camloc

@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a fake /sys says about cameras on USB.
-#include "tools/doctor/usb_devices.h"
+// What a fake /sys says about devices on USB.
+#include "drivers/usb_devices.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/tools/fake_usb.h"
+#include "tests/drivers/fake_usb.h"
 
-namespace camloc::tools {
+namespace camloc {
 namespace {
 
-TEST(UsbDevicesTest, ReadsWhatTheKernelSays) {
+TEST(UsbDevices, ReadsWhatTheKernelSays) {
   const FakeUsb usb;
   usb.add("1-1", {0x045e, 0x02c2, 2});
   usb.add("1-1.2", {0x045e, 0x02ae, 5, "0000000000000000", "gspca_kinect"});
@@ -22,15 +22,20 @@ TEST(UsbDevicesTest, ReadsWhatTheKernelSays) {
   ASSERT_EQ(devices.size(), 4U);
   const UsbDevice& kinect = devices[2];
   EXPECT_EQ(kinect.usb_id(), "045e:02ae");
-  EXPECT_EQ(role_of(kinect), UsbRole::kKinectCamera);
   EXPECT_EQ(kinect.node(), "/dev/bus/usb/001/005");
   EXPECT_EQ(kinect.hub(), "1-1");
   EXPECT_EQ(kinect.speed_mbps, 480);
   EXPECT_EQ(kinect.drivers, (std::vector<std::string>{"gspca_kinect"}));
-  EXPECT_EQ(kinect_serial(kinect, devices), "A00366A04933051A") << "of the audio device beside it";
-  EXPECT_EQ(role_of(devices[3]), UsbRole::kOpenni2Camera);
   EXPECT_TRUE(list_usb_devices(SystemFolders{"/no/such/root"}).empty());
 }
 
+TEST(UsbDevices, IdsMatchAProductOrAllOfAVendor) {
+  const UsbDevice device = bare_usb_device(0x1d27, 0x0601);
+  EXPECT_TRUE((UsbId{0x1d27, 0x0601}.matches(device)));
+  EXPECT_TRUE((UsbId{0x1d27}.matches(device)));
+  EXPECT_FALSE((UsbId{0x1d27, 0x0600}.matches(device)));
+  EXPECT_FALSE((UsbId{0x2bc5}.matches(device)));
+}
+
 }  // namespace
-}  // namespace camloc::tools
+}  // namespace camloc

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The camloc authors
+// SPDX-License-Identifier: Apache-2.0
+//
+// A localization in which every field is set.
+#pragma once
+
+#include "core/localize/localization.h"
+
+namespace camloc::testing {
+
+inline Localization localized() {
+  Localization localization;
+  localization.sequence = 42;
+  localization.stamp_ns = 1'700'000'000'123'456'789;
+  localization.state = State::kLocalized;
+  localization.reason = Reason::kNone;
+  localization.has_pose = true;
+  localization.T_map_camera.translation = {1, 2, 3};
+  localization.T_map_camera.rotation = exp_so3({0.1, -0.2, 0.3});
+  for (int i = 0; i < 36; ++i) localization.covariance(i / 6, i % 6) = i;
+  localization.quality = 77;
+  localization.num_features = 500;
+  localization.num_matches = 300;
+  localization.num_inliers = 200;
+  localization.reset_counter = 2;
+  localization.jump_m = 0.5;
+  localization.stage_ns = {1000, 2000, 3000, 4000, 5000, 15000};
+  return localization;
+}
+
+}  // namespace camloc::testing
