@@ -24,8 +24,8 @@ PoseReport make_pose_report(const Localization& localization, const PoseContext&
   report.state = localization.state;
   report.reason = localization.reason;
   report.num_features = localization.num_features;
-  report.num_matches = localization.num_matches;
-  report.num_inliers = localization.num_inliers;
+  report.num_matches = localization.evidence.num_matches;
+  report.num_inliers = localization.evidence.num_inliers;
   report.reset_counter = std::uint64_t{localization.reset_counter} + context.reset_offset;
   report.jump_m = localization.jump_m;
   report.stage_ns = localization.stage_ns;

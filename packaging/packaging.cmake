@@ -1,8 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The camloc authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Two Debian packages, written by cpack: camloc for the device, camloc-tools for the workstation. Included last by the main
-# CMakeLists.txt; what goes into them is said by install() beside each program.
+# The Debian packages, written by cpack: camloc for the device, camloc-tools for the workstation, and one each for a program that
+# brings much of OpenCV with it, where that is built: camloc-calibration and camloc-bench. Included last by the main CMakeLists.txt;
+# what goes into them is said by install() beside each program, what they weigh is in tests/packaging/weight.sh.
+set(packages camloc camloc-tools)
+if(TARGET camloc-camera)
+  list(APPEND packages camloc-calibration)
+endif()
+if(TARGET camloc-bench)
+  list(APPEND packages camloc-bench)
+endif()
 
 # Message types, for subscribers: the .lcm files, and a pkg-config file that says where they are.
 configure_file(${CMAKE_CURRENT_LIST_DIR}/camloc-lcmtypes.pc.in ${CMAKE_BINARY_DIR}/packaging/camloc-lcmtypes.pc @ONLY)
@@ -12,7 +20,7 @@ install(FILES ${CMAKE_BINARY_DIR}/packaging/camloc-lcmtypes.pc DESTINATION ${CMA
 # What Debian policy asks of every package.
 configure_file(${CMAKE_CURRENT_LIST_DIR}/changelog.in ${CMAKE_BINARY_DIR}/packaging/changelog @ONLY)
 execute_process(COMMAND gzip -9nkf ${CMAKE_BINARY_DIR}/packaging/changelog COMMAND_ERROR_IS_FATAL ANY)
-foreach(package camloc camloc-tools)
+foreach(package IN LISTS packages)
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/copyright ${CMAKE_BINARY_DIR}/packaging/changelog.gz
     DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${package})
 endforeach()
@@ -39,17 +47,25 @@ building and publishes a pose with its covariance for every frame over LCM.
 This package is for the device: the daemon with its systemd unit and udev
 rules, the program camloc that looks at cameras, maps and the daemon, and the
 LCM types of the messages.")
-# The two programs that the maintainer script calls come with systemd, or alone where another init runs. OpenNI2 is opened with
+# The two programs that the maintainer script calls come with systemd, or alone where another init runs or none yet. OpenNI2 is opened with
 # dlopen by cameras that want it; ip sets the route of camloc-multicast.service.
-set(CPACK_DEBIAN_CAMLOC_PACKAGE_DEPENDS "systemd | systemd-standalone-sysusers, systemd | systemd-standalone-tmpfiles")
+set(CPACK_DEBIAN_CAMLOC_PACKAGE_DEPENDS "systemd-standalone-sysusers | systemd, systemd-standalone-tmpfiles | systemd")
 set(CPACK_DEBIAN_CAMLOC_PACKAGE_RECOMMENDS "libopenni2-0, iproute2")
-set(CPACK_DEBIAN_CAMLOC_PACKAGE_SUGGESTS "camloc-tools")
+set(CPACK_DEBIAN_CAMLOC_PACKAGE_SUGGESTS "camloc-tools, camloc-calibration")
 
 set(CPACK_DEBIAN_CAMLOC-TOOLS_PACKAGE_NAME camloc-tools)
 set(CPACK_DEBIAN_CAMLOC-TOOLS_DESCRIPTION "Programs for the workstation: build, merge, evaluate and look at the maps that
-camlocd localizes in, place them in site coordinates, measure time and
-accuracy, and write synthetic buildings to try things on.")
-set(CPACK_DEBIAN_CAMLOC-TOOLS_PACKAGE_RECOMMENDS camloc)
+camlocd localizes in, place them in site coordinates, and write synthetic
+buildings to try things on.")
+set(CPACK_DEBIAN_CAMLOC-CALIBRATION_PACKAGE_NAME camloc-calibration)
+set(CPACK_DEBIAN_CAMLOC-CALIBRATION_DESCRIPTION "Finds the calibration of a camera for camlocd from pictures of a flat
+board: lens, depth scale and how the two sensors are placed.")
+set(CPACK_DEBIAN_CAMLOC-BENCH_PACKAGE_NAME camloc-bench)
+set(CPACK_DEBIAN_CAMLOC-BENCH_DESCRIPTION "Measures where the time of localization goes on this machine and how accurate
+it is, beside a plain chain of OpenCV calls.")
+foreach(package TOOLS CALIBRATION BENCH)
+  set(CPACK_DEBIAN_CAMLOC-${package}_PACKAGE_RECOMMENDS camloc)
+endforeach()
 
 # conffiles names its files one a line; cpack wants the control files under their own names.
 set(control ${CMAKE_BINARY_DIR}/packaging/debian)
@@ -60,7 +76,6 @@ endforeach()
 set(CPACK_DEBIAN_CAMLOC_PACKAGE_CONTROL_EXTRA ${control}/conffiles ${control}/postinst ${control}/prerm ${control}/postrm)
 
 include(CPack)
-cpack_add_component(camloc GROUP camloc)
-foreach(component camloc-tools tools)
-  cpack_add_component(${component} GROUP camloc-tools)
+foreach(package IN LISTS packages)
+  cpack_add_component(${package})
 endforeach()

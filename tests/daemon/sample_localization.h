@@ -20,8 +20,8 @@ inline Localization localized() {
   for (int i = 0; i < 36; ++i) localization.covariance(i / 6, i % 6) = i;
   localization.quality = 77;
   localization.num_features = 500;
-  localization.num_matches = 300;
-  localization.num_inliers = 200;
+  localization.evidence.num_matches = 300;
+  localization.evidence.num_inliers = 200;
   localization.reset_counter = 2;
   localization.jump_m = 0.5;
   localization.stage_ns = {1000, 2000, 3000, 4000, 5000, 15000};

@@ -20,12 +20,14 @@ struct Expected {
   std::size_t least_with_pose;
 };
 
-class Recordings : public ::testing::TestWithParam<Expected> {};
+void PrintTo(const Expected& expected, std::ostream* out) { *out << expected.folder; }
 
-TEST_P(Recordings, IndexPosesAndFirstFrames) {
+class RecordedSequences : public ::testing::TestWithParam<Expected> {};
+
+TEST_P(RecordedSequences, IndexPosesAndFirstFrames) {
   const Expected expected = GetParam();
   const std::string folder = data_folder(expected.folder);
-  if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << folder << " is not here";
+  if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "no recording " << folder;
   const auto sequence = read_sequence(folder);
   ASSERT_TRUE(sequence.is_ok()) << sequence.status().message();
   EXPECT_EQ(sequence->layout, expected.layout);
@@ -51,7 +53,7 @@ TEST_P(Recordings, IndexPosesAndFirstFrames) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Recordings,
+INSTANTIATE_TEST_SUITE_P(All, RecordedSequences,
                          ::testing::Values(Expected{"kitchen", "7scenes", 600, 600, 600}, Expected{"tum_fr1_rpy", "tum", 362, 350, 350},
                                            Expected{"tum_fr1_xyz", "tum", 10, 10, 10}, Expected{"elsewhere", "7scenes", 13, 13, 0}),
                          [](const auto& one) { return std::string(one.param.folder); });

@@ -6,10 +6,10 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <random>
 
 #include "core/io/sequence.h"
+#include "tests/drivers/test_folder.h"
 
 namespace camloc::fakes {
 namespace {
@@ -91,11 +91,10 @@ TEST(PatternShow, IsThePatternThatItSays) {
     EXPECT_EQ(show.frame(format, 0).size(), payload_bytes(format));
 }
 
-TEST(ReplayShow, ShowsARecordingAsItsSensorsWouldHave) {
-  const char* const data = std::getenv("CAMLOC_DATA");
-  if (data == nullptr) GTEST_SKIP() << "CAMLOC_DATA names no folder with recordings";
+TEST(RecordedShow, ShowsARecordingAsItsSensorsWouldHave) {
   ReplayOptions options;
-  options.folder = std::string(data) + "/kitchen";
+  options.folder = data_folder("kitchen");
+  if (!std::filesystem::exists(options.folder)) GTEST_SKIP() << "no recording " << options.folder;
   options.frames = "10:16:5";
   options.at_end = AtEnd::kHold;
   options.cache_file = ::testing::TempDir() + "camloc_show_" + std::to_string(::getpid());

@@ -27,6 +27,9 @@ cv::Mat mat_of(const PaddedImage& image) {
 struct Sizes {
   int src_width, src_height, dst_width, dst_height;
 };
+void PrintTo(const Sizes& sizes, std::ostream* out) {
+  *out << sizes.src_width << 'x' << sizes.src_height << " to " << sizes.dst_width << 'x' << sizes.dst_height;
+}
 
 class ExactResizeTest : public ::testing::TestWithParam<Sizes> {};
 

@@ -20,7 +20,7 @@
 #include "drivers/openni2/installation.h"
 #include "drivers/sources.h"
 #include "tests/drivers/test_folder.h"
-#include "tests/fakes/openni2_synthetic.h"
+#include "tests/fakes/openni2/synthetic.h"
 #include "tests/openni2/thread_allocations.h"
 
 // The library is not built with the sanitizers, keeps what it has allocated for its drivers, and takes its locks in changing order.

@@ -13,7 +13,8 @@
 
 #include "core/io/camera_file.h"
 #include "tools/camloc-bench/commands.h"
-#include "tools/camloc/commands.h"
+#include "tools/common/command_line.h"
+#include "tools/common/terminal_observer.h"
 #include "tools/evaluation/recorded_poses.h"
 #include "tools/evaluation/trajectory_error.h"
 #include "tools/mapping/build/map_pipeline.h"
@@ -26,7 +27,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kPrefix = "slam.";
 
 struct SlamArguments {
-  map_tool::BuildRequest request;
+  mapping::BuildRequest request;
   std::string camera_path, reference_path, folder;
   std::vector<std::string> settings;
   bool is_json = false;
@@ -35,7 +36,7 @@ struct SlamArguments {
 /// One contestant: a map, and how far its trajectory is from the reference.
 struct SlamRun {
   std::string name;
-  map_tool::BuildSummary summary;
+  mapping::BuildSummary summary;
   double cpu_s = 0;
   std::optional<tools::TrajectoryErrors> errors;
 };
@@ -98,14 +99,15 @@ double cpu_seconds() {
 
 Result<SlamRun> build(const SlamArguments& arguments, const std::string& name, const SlamNumbers& numbers,
                       const std::filesystem::path& folder, const std::vector<StampedPose>& reference) {
-  map_tool::BuildRequest request = arguments.request;
+  mapping::BuildRequest request = arguments.request;
   request.slam.numbers = numbers;
   request.map_path = (folder / (name + ".cmap")).string();
   request.trajectory_path = (folder / (name + ".tum")).string();
   SlamRun run;
   run.name = name;
   const double before_s = cpu_seconds();
-  if (const Status built = map_tool::build_map(request, &run.summary); !built.is_ok()) return built;
+  tools::TerminalObserver observer;
+  if (const Status built = mapping::build_map(request, observer, &run.summary); !built.is_ok()) return built;
   run.cpu_s = cpu_seconds() - before_s;
   if (reference.empty()) return run;
   const auto trajectory = tools::read_trajectory(request.trajectory_path);
@@ -119,7 +121,7 @@ void print_table(const std::vector<SlamRun>& runs) {
   std::printf("%-10s %10s %10s %8s %8s %10s %10s %6s %6s %10s %10s\n", "", "ATE cm", "median cm", "cpu s", "wall s", "keyframes",
               "landmarks", "loops", "lost", "median px", "depth cm");
   for (const SlamRun& run : runs) {
-    const map_tool::SlamSummary& slam = *run.summary.slam;
+    const mapping::SlamSummary& slam = *run.summary.slam;
     const std::string ate = run.errors ? std::to_string(100 * run.errors->translation_m.rmse).substr(0, 6) : "-";
     const std::string median = run.errors ? std::to_string(100 * run.errors->translation_m.median).substr(0, 6) : "-";
     std::printf("%-10s %10s %10s %8.1f %8.1f %10u %10u %6u %6u %10.3f %10.2f\n", run.name.c_str(), ate.c_str(), median.c_str(), run.cpu_s,
@@ -129,7 +131,7 @@ void print_table(const std::vector<SlamRun>& runs) {
 }
 
 Json to_json(const SlamRun& run) {
-  const map_tool::SlamSummary& slam = *run.summary.slam;
+  const mapping::SlamSummary& slam = *run.summary.slam;
   Json json{{"map", run.summary.map_path},
             {"cpu_s", run.cpu_s},
             {"wall_s", run.summary.seconds},
@@ -195,7 +197,7 @@ std::string footer() {
 
 CLI::App* add_slam_command(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<SlamArguments>();
-  map_tool::BuildRequest& request = arguments->request;
+  mapping::BuildRequest& request = arguments->request;
   request.frames.poses.clear();
   CLI::App* command = app.add_subcommand("slam", "Accuracy and time of the map of a walk without poses, as it is and as --set changes it");
   command->footer(footer());
@@ -208,7 +210,7 @@ CLI::App* add_slam_command(CLI::App& app, int& exit_code) {
   command->add_option("--keep", arguments->folder,
                       "Folder to leave maps and trajectories in: default.cmap, default.tum, changed.cmap, changed.tum");
   command->add_flag("--json", arguments->is_json, "Print JSON");
-  command->callback([arguments, &exit_code] { exit_code = tools::report(run(*arguments)); });
+  command->callback([arguments, &exit_code] { exit_code = tools::report("camloc", run(*arguments)); });
   return command;
 }
 

@@ -4,6 +4,7 @@
 // `camloc COMMAND`: the commands built in below, or the program camloc-COMMAND.
 #include <algorithm>
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -39,14 +40,19 @@ const std::vector<SplitCommand> kSplitCommands{
     {"camera", {"list", "show", "import"}, {"calibrate"}},
 };
 const char* const kProgramsHelp =
-    "Programs of the package camloc-tools, run as `camloc NAME`:\n"
+    "Programs of other packages, run as `camloc NAME`; camloc-tools:\n"
     "  map build                   Build a map from a recorded walk\n"
     "  map view, map export        See a map; write it for other viewers\n"
     "  map georef, map merge       Put a map into site coordinates; join walks\n"
     "  map eval                    Compare a map with a laser scan\n"
+    "  sim                         Write a synthetic building with its walks\n"
+    "camloc-calibration:\n"
     "  camera calibrate            Find a camera's calibration with a flat board\n"
-    "  bench                       Time and accuracy, beside plain OpenCV calls\n"
-    "  sim                         Write a synthetic building with its walks";
+    "camloc-bench:\n"
+    "  bench                       Time and accuracy, beside plain OpenCV calls";
+/// The package that a program camloc-NAME is in.
+const std::map<std::string, std::string> kPackages{
+    {"map", "camloc-tools"}, {"sim", "camloc-tools"}, {"camera", "camloc-calibration"}, {"bench", "camloc-bench"}};
 
 bool is_one_of(const std::string& word, const std::vector<std::string>& words) {
   return std::find(words.begin(), words.end(), word) != words.end();
@@ -94,8 +100,8 @@ int run_external(const CLI::App& app, const std::vector<std::string>& arguments)
   std::vector<std::string> known{"bench", "sim"};
   for (const CLI::App* command : app.get_subcommands({})) known.push_back(command->get_name());
   std::string hint = "see 'camloc --help'";
-  if (split != nullptr || arguments[0] == "bench" || arguments[0] == "sim") {
-    hint = "install the package camloc-tools";
+  if (const auto package = kPackages.find(arguments[0]); package != kPackages.end()) {
+    hint = "install the package " + package->second;
   } else if (const std::string closest = camloc::tools::closest_word(arguments[0], known); !closest.empty()) {
     hint = "did you mean '" + closest + "'?";
   }

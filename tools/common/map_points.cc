@@ -7,11 +7,9 @@ namespace camloc::tools {
 std::vector<Eigen::Vector3d> landmark_positions(const MapView& map, std::uint32_t min_observations) {
   std::vector<Eigen::Vector3d> points;
   points.reserve(map.landmarks().size());
-  for (const auto& cube : map.cubes()) {
-    for (const auto& landmark : map.landmarks().subspan(cube.first_landmark, cube.num_landmarks)) {
-      if (landmark.num_observations >= min_observations) points.push_back(MapView::position_m(cube, landmark).cast<double>());
-    }
-  }
+  map.for_each_position([&](const auto& landmark, const Eigen::Vector3f& position_m) {
+    if (landmark.num_observations >= min_observations) points.push_back(position_m.cast<double>());
+  });
   return points;
 }
 

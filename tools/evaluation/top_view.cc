@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <opencv2/imgproc.hpp>
 
 #include "core/base/order_statistics.h"
 #include "core/io/image_writer.h"
+#include "tools/common/drawing.h"
 #include "tools/common/map_points.h"
 #include "tools/common/text_format.h"
 
@@ -16,9 +15,10 @@ namespace camloc::tools {
 namespace {
 
 // Colours are RGB; the palette keeps apart for colour-blind readers (blue, orange, grey).
-const cv::Scalar kBackground(252, 252, 250), kInk(40, 40, 46), kGrid(226, 226, 222), kLandmark(168, 172, 180);
-const cv::Scalar kTruth(30, 30, 34), kGood(0, 114, 178), kFair(230, 159, 0), kBad(213, 60, 40), kKeyframe(120, 160, 120);
-constexpr int kWidthPx = 1200, kMargin = 50, kHeader = 70, kFooter = 60;
+constexpr Rgb kBackground{252, 252, 250}, kInk{40, 40, 46}, kLandmark{168, 172, 180};
+constexpr Rgb kTruth{30, 30, 34}, kGood{0, 114, 178}, kFair{230, 159, 0}, kBad{213, 60, 40}, kKeyframe{120, 160, 120};
+constexpr int kMargin = 50, kHeader = 70, kFooter = 60;
+constexpr double kTextPx = 10, kTitlePx = 12.5;
 constexpr double kGoodM = 0.05, kFairM = 0.25;
 
 /// Map axes to picture: which axis is up, and where a metre lands.
@@ -27,9 +27,8 @@ struct Projection {
   double min_right = 0, min_up = 0, px_per_m = 1;
   int height_px = 0;
 
-  [[nodiscard]] cv::Point operator()(const Eigen::Vector3d& p) const {
-    return {kMargin + static_cast<int>(std::lround((p[right] - min_right) * px_per_m)),
-            height_px - kFooter - static_cast<int>(std::lround((p[up] - min_up) * px_per_m))};
+  [[nodiscard]] Eigen::Vector2d operator()(const Eigen::Vector3d& p) const {
+    return {kMargin + (p[right] - min_right) * px_per_m, height_px - kFooter - (p[up] - min_up) * px_per_m};
   }
 };
 
@@ -68,74 +67,73 @@ Projection fit(const std::vector<Eigen::Vector3d>& landmarks, const std::vector<
   return projection;
 }
 
-void draw_text(cv::Mat& canvas, const std::string& text, cv::Point at, const cv::Scalar& color, double size = 0.5) {
-  cv::putText(canvas, text, at, cv::FONT_HERSHEY_SIMPLEX, size, color, 1, cv::LINE_AA);
-}
-
-void draw_scale_bar(cv::Mat& canvas, const Projection& projection) {
+void draw_scale_bar(ColorImage* canvas, const Projection& projection) {
   double length_m = 0.1;
   for (const double step : {0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0})
-    if (step * projection.px_per_m < canvas.cols * 0.25) length_m = step;
-  const cv::Point from(kMargin, canvas.rows - 22);
-  const cv::Point to = from + cv::Point(static_cast<int>(length_m * projection.px_per_m), 0);
-  cv::line(canvas, from, to, kInk, 2);
-  draw_text(canvas, text_of("%g m", length_m), to + cv::Point(8, 5), kInk);
+    if (step * projection.px_per_m < canvas->width * 0.25) length_m = step;
+  const int length_px = static_cast<int>(length_m * projection.px_per_m), v = canvas->height - 22;
+  draw_rectangle(canvas, kMargin, v - 1, length_px, 2, kInk);
+  draw_text(canvas, kMargin + length_px + 8, v + 5, text_of("%g m", length_m), kTextPx, kInk);
 }
 
-void draw_legend(cv::Mat& canvas) {
+void draw_legend(ColorImage* canvas) {
   const struct {
     const char* text;
-    cv::Scalar color;
+    Rgb color;
   } entries[] = {{"landmark", kLandmark},    {"keyframe", kKeyframe}, {"truth", kTruth},
                  {"estimate < 5 cm", kGood}, {"< 25 cm", kFair},      {"farther", kBad}};
-  int x = kMargin;
+  int u = kMargin;
   for (const auto& entry : entries) {
-    cv::circle(canvas, {x, 50}, 5, entry.color, cv::FILLED, cv::LINE_AA);
-    draw_text(canvas, entry.text, {x + 11, 55}, kInk, 0.45);
-    x += 36 + static_cast<int>(8.5 * static_cast<double>(std::string(entry.text).size()));
+    draw_disc(canvas, {u, 50}, 5.5, entry.color);
+    draw_text(canvas, u + 11, 55, entry.text, kTextPx, kInk);
+    u += 36 + text_width(entry.text, kTextPx);
   }
 }
 
-void draw_estimate(cv::Mat& canvas, const TopView& view, const Projection& projection) {
+void draw_keyframe(ColorImage* canvas, const Eigen::Vector2d& at) {
+  const std::array<Eigen::Vector2d, 4> corner = {{{-4, -4}, {4, -4}, {4, 4}, {-4, 4}}};
+  for (std::size_t i = 0; i < 4; ++i) draw_line(canvas, at + corner[i], at + corner[(i + 1) % 4], kKeyframe, 1);
+}
+
+void draw_estimate(ColorImage* canvas, const TopView& view, const Projection& projection) {
   for (std::size_t i = 0; i < view.estimate.size(); ++i) {
     const Rigid3& pose = view.estimate[i];
-    cv::Scalar color = kGood;
+    Rgb color = kGood;
     if (i < view.error_m.size() && view.error_m[i] > kGoodM) color = view.error_m[i] > kFairM ? kBad : kFair;
-    const cv::Point at = projection(pose.translation);
+    const Eigen::Vector2d at = projection(pose.translation);
     const Eigen::Vector3d ahead = pose.translation + pose.rotation * Eigen::Vector3d(0, 0, 16.0 / projection.px_per_m);
-    cv::line(canvas, at, projection(ahead), color, 1, cv::LINE_AA);
-    cv::circle(canvas, at, 5, kBackground, cv::FILLED, cv::LINE_AA);  // a rim, so that dots on the line stay apart
-    cv::circle(canvas, at, 4, color, cv::FILLED, cv::LINE_AA);
+    draw_line(canvas, at, projection(ahead), color, 1);
+    draw_disc(canvas, at, 5.5, kBackground);  // a rim, so that dots on the line stay apart
+    draw_disc(canvas, at, 4.5, color);
   }
 }
 
 }  // namespace
 
-Status write_top_view(const TopView& view, const std::string& path) {
+Status write_top_view(const TopView& view, const std::string& path, int width_px) {
   const std::vector<Eigen::Vector3d> landmarks = view.map == nullptr ? std::vector<Eigen::Vector3d>() : landmark_positions(*view.map);
-  const Projection projection = fit(landmarks, view.truth, view.estimate);
-  cv::Mat canvas(projection.height_px, kWidthPx, CV_8UC3, kBackground);
-  // Far landmarks must not run into the title and the scale.
-  const cv::Rect plot(0, kHeader, canvas.cols, canvas.rows - kHeader - kFooter / 2 - 8);
+  const Projection projection = fit(landmarks, view.truth, view.estimate, width_px);
+  ColorImage canvas = blank_image(width_px, projection.height_px, kBackground);
   for (const auto& p : landmarks) {
-    const cv::Point at = projection(p);
-    if (plot.contains(at)) cv::circle(canvas, at, 1, kLandmark, cv::FILLED);
+    const Eigen::Vector2d at = projection(p);
+    // Far landmarks must not run into the title and the scale.
+    if (at.y() >= kHeader && at.y() < canvas.height - kFooter / 2 - 8) draw_disc(&canvas, at, 1.3, kLandmark);
   }
   if (view.map != nullptr) {
     for (std::uint32_t i = 0; i < view.map->keyframes().size(); ++i) {
-      cv::drawMarker(canvas, projection(view.map->keyframe_pose(i).translation), kKeyframe, cv::MARKER_SQUARE, 9, 1, cv::LINE_AA);
+      draw_keyframe(&canvas, projection(view.map->keyframe_pose(i).translation));
     }
   }
   for (std::size_t i = 1; i < view.truth.size(); ++i) {
     // A line across a gap would show a walk that nobody made.
     if ((view.truth[i].translation - view.truth[i - 1].translation).norm() > 1.0) continue;
-    cv::line(canvas, projection(view.truth[i - 1].translation), projection(view.truth[i].translation), kTruth, 2, cv::LINE_AA);
+    draw_line(&canvas, projection(view.truth[i - 1].translation), projection(view.truth[i].translation), kTruth, 2);
   }
-  draw_estimate(canvas, view, projection);
-  draw_text(canvas, view.title, {kMargin, 28}, kInk, 0.6);
-  draw_legend(canvas);
-  draw_scale_bar(canvas, projection);
-  return write_png(path, canvas.data, canvas.cols, canvas.rows, 3);
+  draw_estimate(&canvas, view, projection);
+  draw_text(&canvas, kMargin, 28, view.title, kTitlePx, kInk);
+  draw_legend(&canvas);
+  draw_scale_bar(&canvas, projection);
+  return write_png(path, canvas);
 }
 
 }  // namespace camloc::tools

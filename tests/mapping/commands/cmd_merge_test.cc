@@ -100,9 +100,11 @@ TEST_F(MergeCommandTest, RefusesFilesThatAreNoMapsAndOutputsThatCannotBe) {
   EXPECT_EQ(run({"merge", file("a.cmap"), "--out", file("m.cmap")}), 2);
 }
 
-TEST_F(MergeCommandTest, BuildExtendsAMapByAnotherRecordingOfTheRoom) {
+using RecordedMergeTest = MergeCommandTest;
+
+TEST_F(RecordedMergeTest, BuildExtendsAMapByAnotherRecordingOfTheRoom) {
   const std::string kitchen = data_folder("kitchen"), camera = (source_folder() / "config/cameras/7scenes.toml").string();
-  if (!std::filesystem::exists(kitchen)) GTEST_SKIP() << kitchen << " is not there; CAMLOC_DATA names the folder of recordings";
+  if (!std::filesystem::exists(kitchen)) GTEST_SKIP() << "no recording " << kitchen;
   const std::vector<std::string> build = {"build", "--sequence", kitchen, "--camera", camera, "--poses", "embedded"};
   const auto with = [&](std::vector<std::string> more) {
     more.insert(more.begin(), build.begin(), build.end());

@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <limits>
 #include <numbers>
-#include <opencv2/imgproc.hpp>
 #include <optional>
 
 #include "tools/common/text_format.h"
@@ -17,14 +16,9 @@
 namespace camloc::mapping {
 namespace {
 
-constexpr double kNearM = 0.05;          // perspective: what is closer to the eye is not drawn
-constexpr double kFontCapHeightPx = 21;  // of cv::FONT_HERSHEY_SIMPLEX at scale 1
-constexpr double kTextHeightPx = 11;     // of labels
-constexpr int kMaxLinePx = 1 << 14;      // cv::line takes 16.16 fixed point
-
-cv::Mat canvas_of(ColorImage* image) { return {image->height, image->width, CV_8UC3, image->pixels.data()}; }
-
-cv::Scalar scalar(Rgb color) { return {static_cast<double>(color[0]), static_cast<double>(color[1]), static_cast<double>(color[2])}; }
+constexpr double kNearM = 0.05;       // perspective: what is closer to the eye is not drawn
+constexpr double kTextHeightPx = 11;  // of labels
+constexpr int kMaxLinePx = 1 << 14;   // what is farther outside is not worth a line
 
 /// Pixel and distance along the view's axis, or nothing behind the eye.
 std::optional<Eigen::Vector3d> project(const Viewpoint& view, const Eigen::Vector3d& p_view) {
@@ -84,12 +78,8 @@ std::array<Rgb, 256> make_value_ramp() {
 
 }  // namespace
 
-PointRaster::PointRaster(int width, int height, Rgb background) {
-  image_.width = width;
-  image_.height = height;
-  image_.pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
+PointRaster::PointRaster(int width, int height, Rgb background) : image_(tools::blank_image(width, height, background)) {
   depth_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), std::numeric_limits<float>::infinity());
-  for (std::size_t i = 0; i < image_.pixels.size(); ++i) image_.pixels[i] = background[i % 3];
 }
 
 void PointRaster::add_points(const Viewpoint& view, std::span<const Eigen::Vector3d> points, std::span<const Rgb> colors,
@@ -114,7 +104,6 @@ void PointRaster::add_points(const Viewpoint& view, std::span<const Eigen::Vecto
 }
 
 void PointRaster::add_line(const Viewpoint& view, std::span<const Eigen::Vector3d> line, Rgb color, double width_px) {
-  cv::Mat canvas = canvas_of(&image_);
   for (std::size_t i = 1; i < line.size(); ++i) {
     Eigen::Vector3d from = view.T_view_world * line[i - 1], to = view.T_view_world * line[i];
     if (view.is_perspective) {  // cut at the near plane
@@ -124,10 +113,7 @@ void PointRaster::add_line(const Viewpoint& view, std::span<const Eigen::Vector3
     }
     const auto a = project(view, from), b = project(view, to);
     if (!a || !b || !is_drawable(*a) || !is_drawable(*b)) continue;
-    // Four fractional bits, so that slow curves stay smooth.
-    const cv::Point p(static_cast<int>(std::lround(16 * a->x())), static_cast<int>(std::lround(16 * a->y())));
-    const cv::Point q(static_cast<int>(std::lround(16 * b->x())), static_cast<int>(std::lround(16 * b->y())));
-    cv::line(canvas, p, q, scalar(color), std::max(1, static_cast<int>(std::lround(width_px))), cv::LINE_AA, 4);
+    tools::draw_line(&image_, a->head<2>(), b->head<2>(), color, std::max(1.0, width_px));
   }
 }
 
@@ -139,28 +125,6 @@ void PointRaster::add_camera(const Viewpoint& view, const Rigid3& T_world_camera
   for (const auto& [from, to] : {std::pair{0U, 1U}, {0U, 2U}, {0U, 3U}, {0U, 4U}, {1U, 2U}, {2U, 3U}, {3U, 4U}, {4U, 1U}}) {
     add_line(view, std::array{corners[from], corners[to]}, color, 1);
   }
-}
-
-void PointRaster::add_text(int u, int v, const std::string& text, double height_px, Rgb color) {
-  std::string printable = text;
-  std::replace_if(
-      printable.begin(), printable.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  cv::Mat canvas = canvas_of(&image_);
-  cv::putText(canvas, printable, {u, v}, cv::FONT_HERSHEY_SIMPLEX, height_px / kFontCapHeightPx, scalar(color),
-              std::max(1, static_cast<int>(std::lround(height_px / 12))), cv::LINE_AA);
-}
-
-int PointRaster::text_width(const std::string& text, double height_px) {
-  int baseline = 0;
-  return cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, height_px / kFontCapHeightPx,
-                         std::max(1, static_cast<int>(std::lround(height_px / 12))), &baseline)
-      .width;
-}
-
-void PointRaster::add_rectangle(int u, int v, int width, int height, Rgb color) {
-  cv::Mat canvas = canvas_of(&image_);
-  const cv::Rect visible = cv::Rect(u, v, std::max(0, width), std::max(0, height)) & cv::Rect(0, 0, canvas.cols, canvas.rows);
-  if (!visible.empty()) canvas(visible).setTo(scalar(color));
 }
 
 void PointRaster::add_scale_bar(const Viewpoint& view, int u, int v, Rgb color) {

@@ -6,18 +6,17 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <array>
-#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/geometry/rigid3.h"
 #include "core/io/image_file.h"
+#include "tools/common/drawing.h"
 
 namespace camloc::mapping {
 
-using Rgb = std::array<std::uint8_t, 3>;
+using tools::Rgb;
 
 /// What is drawn onto a picture: an axis-parallel view, or a pinhole camera.
 struct Viewpoint {
@@ -52,11 +51,12 @@ class PointRaster {
   void add_line(const Viewpoint& view, std::span<const Eigen::Vector3d> line, Rgb color, double width_px);
   /// A camera as a small pyramid, drawn with lines.
   void add_camera(const Viewpoint& view, const Rigid3& T_world_camera, double size_m, Rgb color);
-  /// `height_px` is that of a capital letter; (u, v) is the left end of the line the text stands on. ASCII only.
-  void add_text(int u, int v, const std::string& text, double height_px, Rgb color);
-  [[nodiscard]] static int text_width(const std::string& text, double height_px);
-  /// Filled; (u, v) is its upper left corner.
-  void add_rectangle(int u, int v, int width, int height, Rgb color);
+  /// As in drawing.h.
+  void add_text(int u, int v, const std::string& text, double height_px, Rgb color) {
+    tools::draw_text(&image_, u, v, text, height_px, color);
+  }
+  [[nodiscard]] static int text_width(const std::string& text, double height_px) { return tools::text_width(text, height_px); }
+  void add_rectangle(int u, int v, int width, int height, Rgb color) { tools::draw_rectangle(&image_, u, v, width, height, color); }
   /// A bar of a round length, at most a fifth of the picture, with its label; orthographic views. (u, v) is its left end.
   void add_scale_bar(const Viewpoint& view, int u, int v, Rgb color);
   /// A colour ramp with labels below both ends; 12 px high plus 22 px of labels. (u, v) is its upper left corner.

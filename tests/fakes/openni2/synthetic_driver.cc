@@ -28,7 +28,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/fakes/openni2_synthetic.h"
+#include "tests/fakes/openni2/synthetic.h"
 
 namespace {
 

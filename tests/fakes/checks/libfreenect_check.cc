@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "tests/fakes/kinect_frames.h"
-#include "tests/fakes/stream_check.h"
+#include "tests/fakes/checks/stream_check.h"
 
 namespace {
 

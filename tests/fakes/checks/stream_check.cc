@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Log, clock and counters.
-#include "tests/fakes/stream_check.h"
+#include "tests/fakes/checks/stream_check.h"
 
 #include <sys/resource.h>
 

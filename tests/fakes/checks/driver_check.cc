@@ -18,7 +18,7 @@
 #include "drivers/kinect/kinect_control.h"
 #include "drivers/kinect/kinect_device.h"
 #include "drivers/kinect/kinect_receiver.h"
-#include "tests/fakes/stream_check.h"
+#include "tests/fakes/checks/stream_check.h"
 
 namespace {
 
