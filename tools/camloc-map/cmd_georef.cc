@@ -51,14 +51,14 @@ std::optional<Eigen::Vector3d> rough_up_of(const MapView& map) {
   return rough_up(poses);
 }
 
-Result<PointSighting> landmark_sighting(const MapView& map, std::uint32_t landmark) {
+Result<PointMeasurement> landmark_measurement(const MapView& map, std::uint32_t landmark) {
   if (landmark >= map.info().num_landmarks) {
     return {ErrorCode::kNotFound, "the map has landmarks 0 to " + std::to_string(map.info().num_landmarks - 1)};
   }
-  PointSighting sighting;
-  sighting.p_map = map.position_m(landmark).cast<double>();
-  sighting.sigma_m = std::max(kMinLandmarkSigmaM, 0.001 * map.landmarks()[landmark].position_sigma_mm);
-  return sighting;
+  PointMeasurement measurement;
+  measurement.p_map = map.position_m(landmark).cast<double>();
+  measurement.sigma_m = std::max(kMinLandmarkSigmaM, 0.001 * map.landmarks()[landmark].position_sigma_mm);
+  return measurement;
 }
 
 bool has_pixels(const std::vector<ControlObservation>& observations) {
@@ -87,7 +87,7 @@ Result<ResolvedObservations> resolve(const GeorefArguments& arguments, const Map
     frames = std::move(localized).value();
   }
   ControlSources sources;
-  sources.landmark = [&](std::uint32_t landmark) { return landmark_sighting(map, landmark); };
+  sources.landmark = [&](std::uint32_t landmark) { return landmark_measurement(map, landmark); };
   sources.T_map_camera = [&](std::uint64_t frame) { return frames.at(frame).T_map_camera; };
   sources.pixel = [&](const ControlObservation& pixel) { return frames.at(pixel.frame).measurements.at(pixel.line); };
   return resolve_observations(observations, camera, sources);
@@ -128,13 +128,13 @@ Status georef(const GeorefArguments& arguments, GeorefSummary* summary) {
   summary->left_out = resolved->left_out;
   summary->has_replaced_datum = map->info().wcs.has_value();
   name_partnerless(*points, *observations, summary);
-  const std::vector<ObservedPoint> observed = average_sightings(resolved->sightings);
+  const std::vector<ObservedPoint> observed = average_measurements(resolved->measurements);
   GeorefOptions options = arguments.fit;
   options.up_map = rough_up_of(*map);
   summary->fit = fit_georef(match_points(*points, observed), options);
   for (const ObservedPoint& point : observed) {
     if (point.farthest.empty()) continue;
-    summary->fit.warnings.push_back("the sightings of " + point.name + " scatter more than their accuracy explains; the farthest is " +
+    summary->fit.warnings.push_back("the measurements of " + point.name + " scatter more than their accuracy explains; the farthest is " +
                                     point.farthest + ": is it another point?");
   }
   if (!summary->fit.problem.empty() || arguments.is_dry_run) return Status::ok();

@@ -270,7 +270,7 @@ TEST(MatchPoints, InTheOrderOfThePointsWithBothSigmas) {
   EXPECT_EQ(matched[0].name, "A");
   EXPECT_NEAR(matched[0].pair.sigma_m, 0.05, 1e-12);
   EXPECT_EQ(matched[0].pair.p_b, Eigen::Vector3d(2, 2, 2));
-  EXPECT_EQ(matched[0].num_sightings, 3U);
+  EXPECT_EQ(matched[0].num_measurements, 3U);
   EXPECT_EQ(matched[1].name, "C");
 }
 

@@ -52,7 +52,7 @@ Result<GravityEstimate> up_from_floor(const SlamResult& result, const std::vecto
   return gravity_from_floor(points, centers, *up);
 }
 
-/// The sightings of the survey as the map has them now.
+/// The measurements of the survey as the map has them now.
 ResolvedObservations resolve(const Survey& survey, const RgbdCamera& camera, const SlamResult& result) {
   std::unordered_map<std::uint64_t, const SlamPose*> pose_of_frame;
   for (const SlamPose& pose : result.poses) pose_of_frame.emplace(pose.frame, &pose);
@@ -105,7 +105,7 @@ GeorefFit fit_survey(const SurveyRequest& request, const Survey& survey, const R
   std::vector<Rigid3> cameras;
   for (const StampedPose& pose : trajectory_of(result)) cameras.push_back(pose.T_world_camera);
   options.up_map = rough_up(cameras);
-  return fit_georef(match_points(survey.points, average_sightings(resolved.sightings)), options);
+  return fit_georef(match_points(survey.points, average_measurements(resolved.measurements)), options);
 }
 
 }  // namespace

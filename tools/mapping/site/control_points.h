@@ -84,8 +84,8 @@ using PixelMeasurements = std::map<int, Result<PixelMeasurement>>;
 void measure_pixels(const std::vector<ControlObservation>& observations, const RgbdCamera& camera, const DepthLookup& lookup,
                     const Frame& frame, PixelMeasurements* measurements);
 
-/// One sighting of a point in the map.
-struct PointSighting {
+/// One measurement of a point in the map.
+struct PointMeasurement {
   std::string name;
   Eigen::Vector3d p_map = Eigen::Vector3d::Zero();
   double sigma_m = 0;  ///< per axis
@@ -93,34 +93,34 @@ struct PointSighting {
 };
 
 /// The measured pixel as a point of the map; its sigma has the pixel's, the depth's and the pose's.
-[[nodiscard]] PointSighting to_map(const ControlObservation& pixel, const PixelMeasurement& measurement, const RgbdCamera& camera,
-                                   const PoseWithCovariance& T_map_camera);
+[[nodiscard]] PointMeasurement to_map(const ControlObservation& pixel, const PixelMeasurement& measurement, const RgbdCamera& camera,
+                                      const PoseWithCovariance& T_map_camera);
 
 /// Where the answers come from: a finished map, a localizer, or a SLAM that still runs. What is not set is not there. An
 /// error says why there is no answer, to the user.
 struct ControlSources {
   std::function<Result<PoseWithCovariance>(std::uint64_t frame)> T_map_camera;
   std::function<Result<PixelMeasurement>(const ControlObservation& pixel)> pixel;
-  std::function<Result<PointSighting>(std::uint32_t landmark)> landmark;  ///< name and source are filled in
+  std::function<Result<PointMeasurement>(std::uint32_t landmark)> landmark;  ///< name and source are filled in
 };
 
 struct ResolvedObservations {
-  std::vector<PointSighting> sightings;  ///< in the order of the observations
-  std::vector<std::string> left_out;     ///< "C3, pixel (3.0, 4.0) of frame 12: no depth there"
+  std::vector<PointMeasurement> measurements;  ///< in the order of the observations
+  std::vector<std::string> left_out;           ///< "C3, pixel (3.0, 4.0) of frame 12: no depth there"
 };
 [[nodiscard]] ResolvedObservations resolve_observations(const std::vector<ControlObservation>& observations, const RgbdCamera& camera,
                                                         const ControlSources& sources);
 
-/// All sightings of one name, averaged by weight.
+/// All measurements of one name, averaged by weight.
 struct ObservedPoint {
   std::string name;
   Eigen::Vector3d p_map = Eigen::Vector3d::Zero();
   double sigma_m = 0;    ///< from the sigmas or from the scatter, whichever is larger
   double scatter_m = 0;  ///< root mean square distance from the mean; 0 for a single one
-  std::size_t num_sightings = 0;
+  std::size_t num_measurements = 0;
   std::string farthest;  ///< set where they disagree by more than their sigmas explain: the one farthest from the mean
 };
 /// In the order in which the names come first.
-[[nodiscard]] std::vector<ObservedPoint> average_sightings(const std::vector<PointSighting>& sightings);
+[[nodiscard]] std::vector<ObservedPoint> average_measurements(const std::vector<PointMeasurement>& measurements);
 
 }  // namespace camloc::mapping

@@ -201,7 +201,7 @@ std::vector<GeorefPoint> match_points(const std::vector<ControlPoint>& points, c
     GeorefPoint& match = matched.emplace_back();
     match.name = point.name;
     match.pair = {point.p_wcs, found->second->p_map, std::hypot(point.sigma_m, found->second->sigma_m)};
-    match.num_sightings = found->second->num_sightings;
+    match.num_measurements = found->second->num_measurements;
     match.scatter_m = found->second->scatter_m;
   }
   return matched;

@@ -30,7 +30,7 @@ enum class PointVerdict {
 struct GeorefPoint {
   std::string name;
   PointPair pair;  ///< a: wcs, b: map; sigma of both
-  std::size_t num_sightings = 1;
+  std::size_t num_measurements = 1;
   double scatter_m = 0;
   Eigen::Vector3d residual_m = Eigen::Vector3d::Zero();  ///< wcs coordinates minus fitted ones
   LeaveOneOutResidual left_out;                          ///< where the other points of the fit put it
@@ -55,7 +55,7 @@ struct GeorefFit {
   std::vector<std::string> warnings;
 };
 
-/// Control points with the sightings of the same name, in the order of the points.
+/// Control points with the measurements of the same name, in the order of the points.
 [[nodiscard]] std::vector<GeorefPoint> match_points(const std::vector<ControlPoint>& points, const std::vector<ObservedPoint>& observed);
 
 [[nodiscard]] GeorefFit fit_georef(std::vector<GeorefPoint> points, const GeorefOptions& options);

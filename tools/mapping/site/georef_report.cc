@@ -48,7 +48,7 @@ void append_point(const GeorefPoint& point, int name_columns, std::string* text)
   else
     append_text(text, "%9s %6s  ", "-", "-");
   *text += to_string(point.verdict);
-  if (point.num_sightings > 1) append_text(text, "  %zu sightings, scatter %.3f", point.num_sightings, point.scatter_m);
+  if (point.num_measurements > 1) append_text(text, "  %zu measurements, scatter %.3f", point.num_measurements, point.scatter_m);
   *text += "\n";
 }
 
@@ -97,7 +97,7 @@ Json point_json(const GeorefPoint& point) {
   json["site_m"] = json_of(point.pair.p_a);
   json["map_m"] = json_of(point.pair.p_b);
   json["sigma_m"] = point.pair.sigma_m;
-  json["sightings"] = point.num_sightings;
+  json["measurements"] = point.num_measurements;
   json["scatter_m"] = point.scatter_m;
   json["residual_m"] = json_of(point.residual_m);
   if (point.left_out.is_determined) {

@@ -13,7 +13,7 @@
 namespace camloc::mapping {
 namespace {
 
-/// Squared distance from the mean over variance and degree of freedom, above which sightings contradict each other.
+/// Squared distance from the mean over variance and degree of freedom, above which measurements contradict each other.
 constexpr double kMaxScatterRatio = 16;
 
 Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
@@ -22,13 +22,13 @@ Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
   return m;
 }
 
-Result<PointSighting> resolve(const ControlObservation& observation, const RgbdCamera& camera, const ControlSources& sources) {
-  if (observation.kind == ObservationKind::kMapPosition) return PointSighting{{}, observation.p_map, observation.sigma, {}};
+Result<PointMeasurement> resolve(const ControlObservation& observation, const RgbdCamera& camera, const ControlSources& sources) {
+  if (observation.kind == ObservationKind::kMapPosition) return PointMeasurement{{}, observation.p_map, observation.sigma, {}};
   if (observation.kind == ObservationKind::kLandmark) {
     if (!sources.landmark) return {ErrorCode::kUnavailable, "there is no map to look landmarks up in"};
-    Result<PointSighting> sighting = sources.landmark(observation.landmark);
-    if (sighting && observation.sigma > 0) sighting->sigma_m = observation.sigma;
-    return sighting;
+    Result<PointMeasurement> measurement = sources.landmark(observation.landmark);
+    if (measurement && observation.sigma > 0) measurement->sigma_m = observation.sigma;
+    return measurement;
   }
   if (!sources.T_map_camera || !sources.pixel) return {ErrorCode::kUnavailable, "there is no recording to look pixels up in"};
   const Result<PoseWithCovariance> T_map_camera = sources.T_map_camera(observation.frame);
@@ -38,37 +38,37 @@ Result<PointSighting> resolve(const ControlObservation& observation, const RgbdC
   return to_map(observation, *measurement, camera, *T_map_camera);
 }
 
-ObservedPoint average(const std::string& name, const std::vector<const PointSighting*>& sightings) {
+ObservedPoint average(const std::string& name, const std::vector<const PointMeasurement*>& measurements) {
   ObservedPoint point;
   point.name = name;
-  point.num_sightings = sightings.size();
+  point.num_measurements = measurements.size();
   double weight = 0;
-  for (const PointSighting* sighting : sightings) {
-    const double w = 1 / (sighting->sigma_m * sighting->sigma_m);
+  for (const PointMeasurement* measurement : measurements) {
+    const double w = 1 / (measurement->sigma_m * measurement->sigma_m);
     weight += w;
-    point.p_map += w * sighting->p_map;
+    point.p_map += w * measurement->p_map;
   }
   point.p_map /= weight;
   point.sigma_m = 1 / std::sqrt(weight);
-  if (sightings.size() < 2) return point;
+  if (measurements.size() < 2) return point;
 
   double sum_squared = 0, sum_normalized = 0, farthest = 0;
-  const PointSighting* farthest_sighting = nullptr;
-  for (const PointSighting* sighting : sightings) {
-    const double squared = (sighting->p_map - point.p_map).squaredNorm();
+  const PointMeasurement* farthest_measurement = nullptr;
+  for (const PointMeasurement* measurement : measurements) {
+    const double squared = (measurement->p_map - point.p_map).squaredNorm();
     sum_squared += squared;
-    sum_normalized += squared / (sighting->sigma_m * sighting->sigma_m);
+    sum_normalized += squared / (measurement->sigma_m * measurement->sigma_m);
     if (squared > farthest) {
       farthest = squared;
-      farthest_sighting = sighting;
+      farthest_measurement = measurement;
     }
   }
-  const auto count = static_cast<double>(sightings.size());
+  const auto count = static_cast<double>(measurements.size());
   const double freedom = 3 * (count - 1);
   point.scatter_m = std::sqrt(sum_squared / count);
   // Per axis, of the mean.
   point.sigma_m = std::max(point.sigma_m, std::sqrt(sum_squared / freedom / count));
-  if (farthest_sighting != nullptr && sum_normalized > kMaxScatterRatio * freedom) point.farthest = farthest_sighting->source;
+  if (farthest_measurement != nullptr && sum_normalized > kMaxScatterRatio * freedom) point.farthest = farthest_measurement->source;
   return point;
 }
 
@@ -107,8 +107,8 @@ void measure_pixels(const std::vector<ControlObservation>& observations, const R
   }
 }
 
-PointSighting to_map(const ControlObservation& pixel, const PixelMeasurement& measurement, const RgbdCamera& camera,
-                     const PoseWithCovariance& T_map_camera) {
+PointMeasurement to_map(const ControlObservation& pixel, const PixelMeasurement& measurement, const RgbdCamera& camera,
+                        const PoseWithCovariance& T_map_camera) {
   const double z = measurement.depth_m;
   const Eigen::Vector3d ray(measurement.normalized.x(), measurement.normalized.y(), 1);
   const Eigen::Vector3d turned = T_map_camera.pose.rotation * (z * ray);
@@ -126,25 +126,25 @@ ResolvedObservations resolve_observations(const std::vector<ControlObservation>&
                                           const ControlSources& sources) {
   ResolvedObservations resolved;
   for (const ControlObservation& observation : observations) {
-    Result<PointSighting> sighting = resolve(observation, camera, sources);
-    if (!sighting) {
-      resolved.left_out.push_back(observation.name + ", " + describe(observation) + ": " + sighting.status().message());
+    Result<PointMeasurement> measurement = resolve(observation, camera, sources);
+    if (!measurement) {
+      resolved.left_out.push_back(observation.name + ", " + describe(observation) + ": " + measurement.status().message());
       continue;
     }
-    sighting->name = observation.name;
-    sighting->source = describe(observation);
-    resolved.sightings.push_back(*sighting);
+    measurement->name = observation.name;
+    measurement->source = describe(observation);
+    resolved.measurements.push_back(*measurement);
   }
   return resolved;
 }
 
-std::vector<ObservedPoint> average_sightings(const std::vector<PointSighting>& sightings) {
+std::vector<ObservedPoint> average_measurements(const std::vector<PointMeasurement>& measurements) {
   std::vector<std::string> names;
-  std::map<std::string, std::vector<const PointSighting*>> by_name;
-  for (const PointSighting& sighting : sightings) {
-    std::vector<const PointSighting*>& same = by_name[sighting.name];
-    if (same.empty()) names.push_back(sighting.name);
-    same.push_back(&sighting);
+  std::map<std::string, std::vector<const PointMeasurement*>> by_name;
+  for (const PointMeasurement& measurement : measurements) {
+    std::vector<const PointMeasurement*>& same = by_name[measurement.name];
+    if (same.empty()) names.push_back(measurement.name);
+    same.push_back(&measurement);
   }
   std::vector<ObservedPoint> points;
   points.reserve(names.size());
