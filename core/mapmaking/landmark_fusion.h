@@ -3,7 +3,7 @@
 //
 // From features with depth in posed views to landmarks: a feature close to a projected landmark, at its depth and alike in
 // appearance, is another observation of it; any other feature with depth starts a landmark. Recorded poses disagree with
-// each other between distant views (7-Scenes kitchen: 4 cm), so two sightings farther apart than the depth noise explains
+// each other between distant views (7-Scenes kitchen: 4 cm), so two observations farther apart than the depth noise explains
 // stay two landmarks: each of them agrees with the views around it, a mean of both would agree with none.
 // Offline; allocates as it goes.
 #pragma once

@@ -22,7 +22,7 @@ std::uint32_t insert_keyframe(std::uint64_t frame, std::uint32_t segment, const 
   for (const LandmarkObservation& pair : tracked) {
     const std::int32_t landmark = map->resolve(pair.landmark);
     if (landmark == kNoLandmark) continue;
-    map->add_sighting(static_cast<std::uint32_t>(landmark), {keyframe, pair.feature});
+    map->add_observation(static_cast<std::uint32_t>(landmark), {keyframe, pair.feature});
     map->summarize(static_cast<std::uint32_t>(landmark));
   }
   for (std::uint32_t feature = 0; feature < view.size(); ++feature) {
@@ -48,7 +48,7 @@ int fuse_into_keyframe(LandmarkSet* landmarks, std::uint32_t keyframe, float rad
     const std::int32_t present = map->keyframe(keyframe).landmark_of_feature[feature];
     if (present == into) continue;
     if (present == kNoLandmark) {
-      map->add_sighting(static_cast<std::uint32_t>(into), {keyframe, feature});
+      map->add_observation(static_cast<std::uint32_t>(into), {keyframe, feature});
       map->summarize(static_cast<std::uint32_t>(into));
     } else {
       map->merge(static_cast<std::uint32_t>(present), static_cast<std::uint32_t>(into));

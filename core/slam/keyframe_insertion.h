@@ -18,7 +18,7 @@ namespace camloc {
 std::uint32_t insert_keyframe(std::uint64_t frame, std::uint32_t segment, const ViewFeatures& view,
                               const std::vector<LandmarkObservation>& tracked, SlamMap* map);
 
-/// Looks for landmarks of `landmarks` in a keyframe, within `radius_px` of their projection and at their depth: sightings are
+/// Looks for landmarks of `landmarks` in a keyframe, within `radius_px` of their projection and at their depth: observations are
 /// added, and a landmark that turns out to be the same point as one of the set becomes that one. Returns how many did.
 int fuse_into_keyframe(LandmarkSet* landmarks, std::uint32_t keyframe, float radius_px, PoseSolver* solver, SlamMap* map);
 

@@ -20,7 +20,7 @@ MapFit measure_fit(const BundleOptions& bundle, const MapExtract& extract, std::
     sigmas.push_back(std::abs(static_cast<double>(residuals[i].depth_sigmas)));
     metres.push_back(sigmas.back() * bundle.depth_noise.sigma_m(o.depth_m));
   }
-  fit.num_sightings = residuals.size();
+  fit.num_observations = residuals.size();
   fit.median_px = lower_quantile(pixels, 0.5);
   fit.p90_px = lower_quantile(std::move(pixels), 0.9);
   fit.median_depth_sigmas = lower_quantile(std::move(sigmas), 0.5);
@@ -28,14 +28,14 @@ MapFit measure_fit(const BundleOptions& bundle, const MapExtract& extract, std::
   return fit;
 }
 
-// Takes sightings that do not fit out of the map; the observations of the extract are left as they are.
+// Takes observations that do not fit out of the map; the observations of the extract are left as they are.
 std::uint64_t remove_outliers(const MapExtract& extract, std::span<const BundleResidual> residuals, double max_pixel_sigmas, SlamMap* map) {
   std::uint64_t num_removed = 0;
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     if (residuals[i].pixel_sigmas <= max_pixel_sigmas) continue;
     const BundleObservation& o = extract.problem.observations[i];
     if (o.landmark >= extract.landmarks.size()) continue;
-    map->remove_sighting(extract.landmarks[o.landmark], extract.keyframes[o.camera]);
+    map->remove_observation(extract.landmarks[o.landmark], extract.keyframes[o.camera]);
     ++num_removed;
   }
   return num_removed;

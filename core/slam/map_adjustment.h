@@ -12,7 +12,7 @@ namespace camloc {
 
 /// How well keyframes and landmarks agree after an adjustment.
 struct MapFit {
-  std::uint64_t num_sightings = 0, num_removed = 0;
+  std::uint64_t num_observations = 0, num_removed = 0;
   double median_px = 0, p90_px = 0;  ///< reprojection error, pixels of level 0
   double median_depth_sigmas = 0;    ///< |depth residual|, of the noise that the adjustment was given
   double median_depth_m = 0;
@@ -22,7 +22,7 @@ struct MapFit {
 /// keyframe of the segment never moves.
 MapFit adjust_locally(const BundleOptions& bundle, const SlamNumbers& numbers, std::uint32_t keyframe, SlamMap* map);
 
-/// Adjusts all keyframes of a segment twice, without the worst sightings the second time. Control landmarks hold the map where
+/// Adjusts all keyframes of a segment twice, without the worst observations the second time. Control landmarks hold the map where
 /// they were surveyed; with three or more of them the first keyframe moves, too.
 MapFit adjust_globally(const BundleOptions& bundle, std::uint32_t segment, const MapEvidence& evidence, double max_pixel_sigmas,
                        SlamMap* map, const BundleCallback& on_iteration = {});

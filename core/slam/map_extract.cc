@@ -19,13 +19,13 @@ void add_camera(const SlamMap& map, std::uint32_t keyframe, bool is_fixed, MapEx
   extract->problem.is_camera_fixed.push_back(is_fixed ? 1 : 0);
 }
 
-// A landmark with all its sightings by cameras of the problem.
+// A landmark with all its observations by cameras of the problem.
 void add_landmark(const SlamMap& map, std::uint32_t index, MapExtract* extract) {
   const SlamLandmark& landmark = map.landmark(index);
   const auto number = static_cast<std::uint32_t>(extract->landmarks.size());
   extract->landmarks.push_back(index);
   extract->problem.landmarks_m.push_back(landmark.position_m);
-  for (const Sighting& s : landmark.sightings) {
+  for (const Observation& s : landmark.observations) {
     const std::uint32_t camera = extract->camera_of_keyframe[s.keyframe];
     if (camera == kAbsent) continue;
     const ViewFeatures& view = map.keyframe(s.keyframe).view;
@@ -93,10 +93,10 @@ MapExtract extract_window(const SlamNumbers& numbers, std::uint32_t keyframe, co
     for (const std::int32_t index : map.keyframe(k).landmark_of_feature) {
       if (index == kNoLandmark || is_in[static_cast<std::size_t>(index)] != 0) continue;
       const SlamLandmark& landmark = map.landmark(static_cast<std::uint32_t>(index));
-      if (landmark.sightings.size() < 2) continue;
+      if (landmark.observations.size() < 2) continue;
       is_in[static_cast<std::size_t>(index)] = 1;
       landmarks.push_back(static_cast<std::uint32_t>(index));
-      for (const Sighting& s : landmark.sightings) ++num_seen[s.keyframe];
+      for (const Observation& s : landmark.observations) ++num_seen[s.keyframe];
     }
   }
   std::vector<std::uint32_t> outside;
@@ -121,7 +121,7 @@ MapExtract extract_segment(std::uint32_t segment, const MapEvidence& evidence, c
   }
   for (std::uint32_t i = 0; i < map.landmarks().size(); ++i) {
     const SlamLandmark& landmark = map.landmark(i);
-    if (landmark.sightings.size() >= 2 && map.keyframe(landmark.sightings.front().keyframe).segment == segment)
+    if (landmark.observations.size() >= 2 && map.keyframe(landmark.observations.front().keyframe).segment == segment)
       add_landmark(map, i, &extract);
   }
   add_controls(evidence.controls, &extract);
@@ -138,7 +138,7 @@ void write_back(const MapExtract& extract, SlamMap* map) {
     for (const std::int32_t index : keyframe.landmark_of_feature) {
       if (index == kNoLandmark) continue;
       SlamLandmark& landmark = map->landmark(static_cast<std::uint32_t>(index));
-      if (landmark.sightings.size() == 1) landmark.position_m = T_new_old * landmark.position_m;
+      if (landmark.observations.size() == 1) landmark.position_m = T_new_old * landmark.position_m;
     }
   }
   for (std::size_t i = 0; i < extract.landmarks.size(); ++i)

@@ -27,7 +27,7 @@ struct ControlLandmark {
   std::vector<Seen> seen;
 };
 
-/// What is known about the keyframes of a map besides their sightings.
+/// What is known about the keyframes of a map besides their observations.
 struct MapEvidence {
   std::span<const ControlLandmark> controls;
   std::span<const PoseGraphEdge> links;  ///< between keyframes, e.g. by dense alignment
@@ -50,7 +50,7 @@ struct MapExtract {
 /// know nothing of a depth camera that is bent or not in step with the colour camera.
 [[nodiscard]] MapExtract extract_segment(std::uint32_t segment, const MapEvidence& evidence, const SlamMap& map);
 
-/// Poses and landmarks back into the map. A landmark with a single sighting stays where its keyframe sees it.
+/// Poses and landmarks back into the map. A landmark with a single observation stays where its keyframe sees it.
 void write_back(const MapExtract& extract, SlamMap* map);
 
 }  // namespace camloc

@@ -6,7 +6,7 @@
 
 #include "core/geometry/pose_refinement.h"
 #include "core/slam/keyframe_insertion.h"
-#include "core/slam/sighting_refinement.h"
+#include "core/slam/observation_refinement.h"
 
 namespace camloc {
 namespace {
@@ -270,8 +270,8 @@ void Slam::count(const LoopReport& loop) {
 }
 
 // Pixels are not needed any more afterwards.
-void Slam::refine_all_sightings() {
-  if (options_.numbers.refine_sightings != 0) (void)refine_sightings(&map_);
+void Slam::refine_all_observations() {
+  if (options_.numbers.refine_observations != 0) (void)refine_observations(&map_);
   for (std::uint32_t k = 0; k < map_.keyframes().size(); ++k) map_.keyframe(k).view.patches = {};
 }
 
@@ -285,7 +285,7 @@ MapEvidence Slam::evidence(std::uint32_t segment) const {
 
 SlamResult Slam::finish(const BundleCallback& on_iteration) {
   join_leftover_segments();
-  refine_all_sightings();
+  refine_all_observations();
   fits_.clear();
   controls_.clear();
   for (const SlamKeyframe& keyframe : map_.keyframes()) fits_[keyframe.segment];

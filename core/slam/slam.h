@@ -122,7 +122,7 @@ class Slam {
   void add_keyframe(std::uint64_t frame, ViewFeatures view, const Registration& tracked, ViewReport* report);
   void adjust_around(std::uint32_t keyframe);
   void join_leftover_segments();
-  void refine_all_sightings();
+  void refine_all_observations();
   void count(const LoopReport& loop);
   void remember(std::uint64_t frame, std::int64_t stamp_ns, bool is_keyframe, std::vector<TrackedView::Seen> seen = {});
   [[nodiscard]] std::vector<TrackedView::Seen> seen_in(const ViewFeatures& view, const std::vector<LandmarkObservation>& pairs) const;

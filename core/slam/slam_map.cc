@@ -11,10 +11,10 @@
 namespace camloc {
 namespace {
 
-// Beyond this many sightings the descriptor is chosen from an even sample of them.
+// Beyond this many observations the descriptor is chosen from an even sample of them.
 constexpr std::size_t kMaxCompared = 12;
 
-bool is_before(const Sighting& a, std::uint32_t keyframe) { return a.keyframe < keyframe; }
+bool is_before(const Observation& a, std::uint32_t keyframe) { return a.keyframe < keyframe; }
 
 }  // namespace
 
@@ -29,56 +29,56 @@ std::uint32_t SlamMap::add_keyframe(std::uint64_t frame, std::uint32_t segment, 
   return static_cast<std::uint32_t>(keyframes_.size() - 1);
 }
 
-std::uint32_t SlamMap::add_landmark(Sighting first) {
+std::uint32_t SlamMap::add_landmark(Observation first) {
   const auto index = static_cast<std::uint32_t>(landmarks_.size());
   const ViewFeatures& view = keyframes_[first.keyframe].view;
   assert(view.depth_m[first.feature] > 0);
   landmarks_.emplace_back().position_m = view.T_map_camera * view.point_camera(first.feature);
-  add_sighting(index, first);
+  add_observation(index, first);
   summarize(index);
   return index;
 }
 
-std::uint32_t SlamMap::add_landmark(const Eigen::Vector3d& position_m, Sighting first, Sighting second) {
+std::uint32_t SlamMap::add_landmark(const Eigen::Vector3d& position_m, Observation first, Observation second) {
   const auto index = static_cast<std::uint32_t>(landmarks_.size());
   landmarks_.emplace_back().position_m = position_m;
-  add_sighting(index, first);
-  add_sighting(index, second);
+  add_observation(index, first);
+  add_observation(index, second);
   summarize(index);
   return index;
 }
 
-void SlamMap::add_sighting(std::uint32_t landmark, Sighting sighting) {
-  SlamKeyframe& keyframe = keyframes_[sighting.keyframe];
-  auto& sightings = landmarks_[landmark].sightings;
-  const auto place = std::lower_bound(sightings.begin(), sightings.end(), sighting.keyframe, is_before);
-  const bool is_seen = place != sightings.end() && place->keyframe == sighting.keyframe;
-  if (is_seen || keyframe.landmark_of_feature[sighting.feature] != kNoLandmark) return;
-  if (sightings.empty()) ++num_alive_;
-  sightings.insert(place, sighting);
-  keyframe.landmark_of_feature[sighting.feature] = static_cast<std::int32_t>(landmark);
+void SlamMap::add_observation(std::uint32_t landmark, Observation observation) {
+  SlamKeyframe& keyframe = keyframes_[observation.keyframe];
+  auto& observations = landmarks_[landmark].observations;
+  const auto place = std::lower_bound(observations.begin(), observations.end(), observation.keyframe, is_before);
+  const bool is_seen = place != observations.end() && place->keyframe == observation.keyframe;
+  if (is_seen || keyframe.landmark_of_feature[observation.feature] != kNoLandmark) return;
+  if (observations.empty()) ++num_alive_;
+  observations.insert(place, observation);
+  keyframe.landmark_of_feature[observation.feature] = static_cast<std::int32_t>(landmark);
   ++keyframe.num_landmarks;
 }
 
-void SlamMap::remove_sighting(std::uint32_t landmark, std::uint32_t keyframe) {
-  auto& sightings = landmarks_[landmark].sightings;
-  const auto place = std::lower_bound(sightings.begin(), sightings.end(), keyframe, is_before);
-  if (place == sightings.end() || place->keyframe != keyframe) return;
+void SlamMap::remove_observation(std::uint32_t landmark, std::uint32_t keyframe) {
+  auto& observations = landmarks_[landmark].observations;
+  const auto place = std::lower_bound(observations.begin(), observations.end(), keyframe, is_before);
+  if (place == observations.end() || place->keyframe != keyframe) return;
   keyframes_[keyframe].landmark_of_feature[place->feature] = kNoLandmark;
   --keyframes_[keyframe].num_landmarks;
-  sightings.erase(place);
-  if (sightings.empty()) --num_alive_;
+  observations.erase(place);
+  if (observations.empty()) --num_alive_;
 }
 
 void SlamMap::merge(std::uint32_t from, std::uint32_t into) {
   if (from == into) return;
-  const std::vector<Sighting> moved = landmarks_[from].sightings;
-  for (const Sighting& sighting : moved) {
-    remove_sighting(from, sighting.keyframe);
-    add_sighting(into, sighting);
+  const std::vector<Observation> moved = landmarks_[from].observations;
+  for (const Observation& observation : moved) {
+    remove_observation(from, observation.keyframe);
+    add_observation(into, observation);
   }
   landmarks_[from].merged_into = static_cast<std::int32_t>(into);
-  landmarks_[from].sightings.shrink_to_fit();
+  landmarks_[from].observations.shrink_to_fit();
   summarize(into);
 }
 
@@ -98,7 +98,7 @@ void SlamMap::summarize(std::uint32_t index) {
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   landmark.min_reference_m = 1e9F;
   landmark.max_reference_m = 0;
-  for (const Sighting& s : landmark.sightings) {
+  for (const Observation& s : landmark.observations) {
     const SlamKeyframe& keyframe = keyframes_[s.keyframe];
     direction += (keyframe.view.T_map_camera.translation - landmark.position_m).normalized();
     const float reference = reference_m(keyframe, s.feature, landmark.position_m);
@@ -108,9 +108,9 @@ void SlamMap::summarize(std::uint32_t index) {
   landmark.direction = direction.norm() > 1e-9 ? direction.normalized().eval() : Eigen::Vector3d::Zero();
 
   std::vector<Descriptor> seen;
-  const std::size_t step = (landmark.sightings.size() + kMaxCompared - 1) / kMaxCompared;
-  for (std::size_t i = 0; i < landmark.sightings.size(); i += step) {
-    const Sighting& s = landmark.sightings[i];
+  const std::size_t step = (landmark.observations.size() + kMaxCompared - 1) / kMaxCompared;
+  for (std::size_t i = 0; i < landmark.observations.size(); i += step) {
+    const Observation& s = landmark.observations[i];
     seen.push_back(keyframes_[s.keyframe].view.features.descriptors[s.feature]);
   }
   std::uint32_t best = 0xFFFFFFFF;
@@ -130,7 +130,7 @@ std::vector<CovisibleKeyframe> SlamMap::covisible(std::uint32_t keyframe, std::u
   std::vector<std::uint32_t> counts(keyframes_.size(), 0), touched;
   for (const std::int32_t landmark : keyframes_[keyframe].landmark_of_feature) {
     if (landmark == kNoLandmark) continue;
-    for (const Sighting& s : landmarks_[static_cast<std::size_t>(landmark)].sightings) {
+    for (const Observation& s : landmarks_[static_cast<std::size_t>(landmark)].observations) {
       if (counts[s.keyframe]++ == 0) touched.push_back(s.keyframe);
     }
   }
@@ -162,7 +162,7 @@ void SlamMap::collect_landmarks(std::span<const std::uint32_t> keyframes, std::s
       if (set->size() >= max_landmarks) return;
       is_in[static_cast<std::size_t>(index)] = 1;
       const SlamLandmark& landmark = landmarks_[static_cast<std::size_t>(index)];
-      const Sighting& first = landmark.sightings.front();
+      const Observation& first = landmark.observations.front();
       set->add({static_cast<std::uint32_t>(index), landmark.position_m, landmark.direction, landmark.min_reference_m,
                 landmark.max_reference_m, keyframes_[first.keyframe].view.features.keypoints[first.feature].angle_rad,
                 std::span(&landmark.descriptor, 1)});
@@ -172,7 +172,7 @@ void SlamMap::collect_landmarks(std::span<const std::uint32_t> keyframes, std::s
 
 void SlamMap::join_segments(std::uint32_t from, std::uint32_t into, const Rigid3& T_into_from) {
   for (SlamLandmark& landmark : landmarks_) {
-    if (!landmark.is_alive() || keyframes_[landmark.sightings.front().keyframe].segment != from) continue;
+    if (!landmark.is_alive() || keyframes_[landmark.observations.front().keyframe].segment != from) continue;
     landmark.position_m = T_into_from * landmark.position_m;
     landmark.direction = T_into_from.rotation * landmark.direction;
   }

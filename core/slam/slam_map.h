@@ -24,18 +24,18 @@ inline constexpr std::int32_t kNoLandmark = -1;
 [[nodiscard]] constexpr double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 
 /// Feature of a keyframe that shows a landmark.
-struct Sighting {
+struct Observation {
   std::uint32_t keyframe = 0, feature = 0;
 };
 
 struct SlamLandmark {
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();  ///< in the frame of its segment
-  std::vector<Sighting> sightings;                       ///< ascending by keyframe, one a keyframe
-  Descriptor descriptor;                                 ///< the sighting's that is closest to all others
+  std::vector<Observation> observations;                 ///< ascending by keyframe, one a keyframe
+  Descriptor descriptor;                                 ///< the observation's that is closest to all others
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();   ///< mean unit vector to the cameras that saw it
   float min_reference_m = 0, max_reference_m = 0;        ///< distance * scale of the level it was seen on
   std::int32_t merged_into = kNoLandmark;                ///< gone: it is this one
-  [[nodiscard]] bool is_alive() const { return !sightings.empty(); }
+  [[nodiscard]] bool is_alive() const { return !observations.empty(); }
 };
 
 struct SlamKeyframe {
@@ -58,17 +58,17 @@ class SlamMap {
 
   std::uint32_t add_keyframe(std::uint64_t frame, std::uint32_t segment, ViewFeatures view);
   /// A landmark at the depth of a feature that has one.
-  std::uint32_t add_landmark(Sighting first);
+  std::uint32_t add_landmark(Observation first);
   /// A landmark that two keyframes see, somewhere.
-  std::uint32_t add_landmark(const Eigen::Vector3d& position_m, Sighting first, Sighting second);
+  std::uint32_t add_landmark(const Eigen::Vector3d& position_m, Observation first, Observation second);
   /// No-op where the keyframe already sees the landmark or the feature already shows one.
-  void add_sighting(std::uint32_t landmark, Sighting sighting);
-  void remove_sighting(std::uint32_t landmark, std::uint32_t keyframe);
-  /// `from` becomes `into`; where a keyframe saw both, its sighting of `into` stays.
+  void add_observation(std::uint32_t landmark, Observation observation);
+  void remove_observation(std::uint32_t landmark, std::uint32_t keyframe);
+  /// `from` becomes `into`; where a keyframe saw both, its observation of `into` stays.
   void merge(std::uint32_t from, std::uint32_t into);
   /// The landmark this one has become after merging, or kNoLandmark when it is gone.
   [[nodiscard]] std::int32_t resolve(std::uint32_t landmark) const;
-  /// Descriptor, direction and scale range from the sightings; call after these have changed.
+  /// Descriptor, direction and scale range from the observations; call after these have changed.
   void summarize(std::uint32_t landmark);
 
   /// Keyframes that share at least `min_shared` landmarks with this one, most first; ties by index.

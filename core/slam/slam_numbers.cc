@@ -15,8 +15,8 @@ constexpr NumberEntry<N> kTable[] = {
     {"depth_in_adjustment", "0 or 1", &N::depth_in_adjustment,
      "and in bundle adjustments, as do links by dense alignment; without: kitchen 6.4 cm instead of 3.6, fr1_rpy 3.4 instead of 1.8"},
     {"close_loops", "0 or 1", &N::close_loops, "places seen again correct the map and join segments"},
-    {"refine_sightings", "0 or 1", &N::refine_sightings,
-     "sightings move to a fraction of a pixel before the final adjustment; reprojection errors go down by a quarter to two thirds"},
+    {"refine_observations", "0 or 1", &N::refine_observations,
+     "observations move to a fraction of a pixel before the final adjustment; reprojection errors go down by a quarter to two thirds"},
 
     {"track_radius_px", "px", &N::track_radius_px, "search window around the prediction"},
     {"track_wide_radius_px", "px", &N::track_wide_radius_px, "the same where the narrow one has found too little"},
@@ -55,7 +55,7 @@ constexpr NumberEntry<N> kTable[] = {
     {"window_free_keyframes", "keyframes", &N::window_free_keyframes, "that the local adjustment moves"},
     {"window_fixed_keyframes", "keyframes", &N::window_fixed_keyframes, "that hold them in place"},
     {"window_iterations", "", &N::window_iterations, "of the local adjustment"},
-    {"window_max_pixel_sigmas", "sigmas", &N::window_max_pixel_sigmas, "sightings farther off after it are removed"},
+    {"window_max_pixel_sigmas", "sigmas", &N::window_max_pixel_sigmas, "observations farther off after it are removed"},
     {"final_max_pixel_sigmas", "sigmas", &N::final_max_pixel_sigmas, "and after the final adjustment"},
 
     {"pixel_kernel_sigmas", "sigmas", &N::pixel_kernel_sigmas,

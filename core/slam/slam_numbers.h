@@ -13,7 +13,7 @@
 namespace camloc {
 
 struct SlamNumbers {
-  int depth_in_tracking = 1, depth_in_adjustment = 1, close_loops = 1, refine_sightings = 1;
+  int depth_in_tracking = 1, depth_in_adjustment = 1, close_loops = 1, refine_observations = 1;
 
   float track_radius_px = 14, track_wide_radius_px = 40;
   std::uint32_t track_min_inliers = 30;

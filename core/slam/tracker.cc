@@ -93,7 +93,7 @@ Registration Tracker::track(const ViewFeatures& view, std::uint64_t seed) {
 std::uint32_t Tracker::best_reference(const Registration& tracked) const {
   std::vector<std::uint32_t> counts(map_->keyframes().size(), 0);
   for (const LandmarkObservation& pair : tracked.inliers) {
-    for (const Sighting& s : map_->landmark(pair.landmark).sightings) ++counts[s.keyframe];
+    for (const Observation& s : map_->landmark(pair.landmark).observations) ++counts[s.keyframe];
   }
   std::uint32_t best = reference_;
   for (std::uint32_t k = 0; k < counts.size(); ++k) {

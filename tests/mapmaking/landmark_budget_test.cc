@@ -55,7 +55,7 @@ TEST(LandmarkBudget, SpreadsOverTheImage) {
   EXPECT_EQ(std::count_if(kept.begin(), kept.end(), [](std::uint32_t i) { return i >= 190; }), 10);
 }
 
-TEST(LandmarkBudget, TakesSingleSightingsOnlyWhereAViewNeedsThem) {
+TEST(LandmarkBudget, TakesSingleObservationsOnlyWhereAViewNeedsThem) {
   Views views(4);
   for (std::uint32_t i = 0; i < 70; ++i) views[0].push_back({i, 0}), views[1].push_back({i, 0});  // seen twice
   for (std::uint32_t i = 70; i < 100; ++i) views[0].push_back({i, 1});                            // once, in a rich view

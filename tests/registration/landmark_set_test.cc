@@ -25,7 +25,7 @@ TEST(LandmarkSet, HoldsEachLandmarkOnceInTheOrderOfTheKeyframes) {
   const std::uint32_t keyframes[] = {2, 1, 2};
   f.map.collect_landmarks(keyframes, 100000, &set);
   EXPECT_EQ(set.size(), f.map.keyframe(2).num_landmarks + f.map.keyframe(1).num_landmarks);  // none are shared
-  EXPECT_EQ(f.map.landmark(set.id(0)).sightings.front().keyframe, 2U);
+  EXPECT_EQ(f.map.landmark(set.id(0)).observations.front().keyframe, 2U);
   EXPECT_EQ(set.position_m(0), f.map.landmark(set.id(0)).position_m.cast<float>());
   EXPECT_EQ(set.descriptors().size(), set.size());
   f.map.collect_landmarks(keyframes, 50, &set);
@@ -44,7 +44,7 @@ TEST(LandmarkSet, ProjectsWhatIsInView) {
   EXPECT_GE(visible.size() + 3, set.size());
   for (const ProjectedLandmark& p : visible) {
     const SlamLandmark& landmark = f.map.landmark(set.id(static_cast<std::size_t>(p.landmark)));
-    const Keypoint& keypoint = f.map.keyframe(0).view.features.keypoints[landmark.sightings.front().feature];
+    const Keypoint& keypoint = f.map.keyframe(0).view.features.keypoints[landmark.observations.front().feature];
     EXPECT_NEAR(p.u, keypoint.u, 0.01);
     EXPECT_NEAR(p.v, keypoint.v, 0.01);
     EXPECT_LE(p.min_level, keypoint.level);

@@ -27,15 +27,15 @@ TEST(FarLandmarks, AreWhereTheyAre) {
   int num_wrong = 0;
   for (std::uint32_t i = num_before; i < f.map.landmarks().size(); ++i) {
     const SlamLandmark& landmark = f.map.landmark(i);
-    ASSERT_EQ(landmark.sightings.size(), 2U);
-    EXPECT_EQ(f.map.keyframe(third).landmark_of_feature[landmark.sightings[1].feature], static_cast<std::int32_t>(i));
-    for (const Sighting& s : landmark.sightings) EXPECT_EQ(f.map.keyframe(s.keyframe).view.depth_m[s.feature], 0);
+    ASSERT_EQ(landmark.observations.size(), 2U);
+    EXPECT_EQ(f.map.keyframe(third).landmark_of_feature[landmark.observations[1].feature], static_cast<std::int32_t>(i));
+    for (const Observation& s : landmark.observations) EXPECT_EQ(f.map.keyframe(s.keyframe).view.depth_m[s.feature], 0);
     if (!f.is_one_point(landmark)) {
       ++num_wrong;
       continue;
     }
     // A pixel of error over a baseline of half a metre: the distance is off by z^2 / (f b) a pixel, times what the ray is off axis.
-    const Eigen::Vector3d truth = f.world.points[f.point(landmark.sightings[0])].position_m;
+    const Eigen::Vector3d truth = f.world.points[f.point(landmark.observations[0])].position_m;
     const double distance = (truth - f.map.keyframe(third).view.T_map_camera.translation).norm();
     EXPECT_LT((landmark.position_m - truth).norm(), 0.05 + 0.4 * distance);
   }

@@ -55,7 +55,7 @@ TEST(KeyframeInsertion, FusingMakesOneLandmarkOfOnePoint) {
   EXPECT_LT(f.map.num_alive_landmarks(), num_before - 100);
   std::size_t num_shared = 0, num_wrong = 0;
   for (const SlamLandmark& landmark : f.map.landmarks()) {
-    if (landmark.sightings.size() < 2) continue;
+    if (landmark.observations.size() < 2) continue;
     ++num_shared;
     num_wrong += f.is_one_point(landmark) ? 0U : 1U;
   }

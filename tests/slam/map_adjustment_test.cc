@@ -55,7 +55,7 @@ TEST(MapAdjustment, LocalAdjustmentKeepsTheFirstKeyframeAndMendsTheOthers) {
   const double before = d.error_m();
   const Rigid3 first = d.map.keyframe(0).view.T_map_camera;
   const MapFit fit = adjust_locally(bundle_for(d.viewer.camera()), {}, 5, &d.map);
-  EXPECT_GT(fit.num_sightings, 100U);
+  EXPECT_GT(fit.num_observations, 100U);
   EXPECT_LT(fit.median_px, 0.8);
   EXPECT_LT(fit.median_depth_sigmas, 1);
   EXPECT_EQ(d.map.keyframe(0).view.T_map_camera.translation, first.translation);
@@ -92,12 +92,12 @@ TEST(MapAdjustment, KeyframesOutsideTheWindowStay) {
 
 TEST(MapAdjustment, GlobalAdjustmentReportsTheFitAndRemovesWhatDoesNotFit) {
   Disturbed d;
-  // A wrong sighting: another feature of the keyframe claims a landmark.
+  // A wrong observation: another feature of the keyframe claims a landmark.
   std::uint32_t landmark = 0;
-  while (d.map.landmark(landmark).sightings.size() < 3 || d.map.landmark(landmark).sightings.back().keyframe == 5) ++landmark;
+  while (d.map.landmark(landmark).observations.size() < 3 || d.map.landmark(landmark).observations.back().keyframe == 5) ++landmark;
   std::uint32_t feature = 0;
   while (d.map.keyframe(5).landmark_of_feature[feature] != kNoLandmark) ++feature;
-  d.map.add_sighting(landmark, {5, feature});
+  d.map.add_observation(landmark, {5, feature});
   const MapFit fit = adjust_globally(bundle_for(d.viewer.camera()), 0, {}, 3.0, &d.map);
   EXPECT_EQ(d.map.keyframe(5).landmark_of_feature[feature], kNoLandmark);
   EXPECT_GE(fit.num_removed, 1U);
@@ -117,7 +117,7 @@ TEST(MapAdjustment, AnotherSegmentIsNotTouched) {
   EXPECT_EQ(d.map.keyframe(other).view.T_map_camera.translation, before.translation);
   EXPECT_EQ(d.map.landmarks().back().position_m, landmark);
   const MapFit fit = adjust_globally(bundle_for(d.viewer.camera()), 9, {}, 3.0, &d.map);  // there is no such segment
-  EXPECT_EQ(fit.num_sightings, 0U);
+  EXPECT_EQ(fit.num_observations, 0U);
 }
 
 TEST(MapAdjustment, ControlLandmarksMoveTheMapToWhereTheyWereSurveyed) {
@@ -127,11 +127,11 @@ TEST(MapAdjustment, ControlLandmarksMoveTheMapToWhereTheyWereSurveyed) {
   std::vector<ControlLandmark> controls;
   for (std::uint32_t i = 0; i < d.map.landmarks().size() && controls.size() < 12; i += 5) {
     const SlamLandmark& landmark = d.map.landmark(i);
-    if (landmark.sightings.size() < 4) continue;
+    if (landmark.observations.size() < 4) continue;
     ControlLandmark& control = controls.emplace_back();
     control.position_m = T_site_map * landmark.position_m;
     control.sigma_m = 0.0005;
-    for (const Sighting& s : landmark.sightings) {
+    for (const Observation& s : landmark.observations) {
       const ViewFeatures& view = d.map.keyframe(s.keyframe).view;
       control.seen.push_back({s.keyframe, view.normalized[s.feature].x(), view.normalized[s.feature].y(), view.depth_m[s.feature], 0.5F});
     }

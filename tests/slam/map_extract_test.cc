@@ -64,7 +64,7 @@ TEST(MapExtract, ASegmentIsItsOwnKeyframesAndLandmarksAlone) {
   EXPECT_EQ(second.keyframes, std::vector<std::uint32_t>({4, 5}));
   EXPECT_EQ(second.problem.is_camera_fixed, std::vector<std::uint8_t>({1, 0}));
   EXPECT_GT(second.landmarks.size(), 20U);
-  for (const std::uint32_t index : second.landmarks) EXPECT_GE(s.map.landmark(index).sightings.front().keyframe, 4U);
+  for (const std::uint32_t index : second.landmarks) EXPECT_GE(s.map.landmark(index).observations.front().keyframe, 4U);
 }
 
 TEST(MapExtract, ThreeControlPointsHoldTheMapAndAreNoLandmarksOfIt) {
@@ -105,7 +105,7 @@ TEST(MapExtract, ALandmarkSeenOnceStaysWhereItsKeyframeSeesIt) {
   Shared s;
   MapExtract extract = extract_segment(0, {}, s.map);
   std::uint32_t alone = 0;
-  while (s.map.landmark(alone).sightings.size() != 1 || s.map.landmark(alone).sightings[0].keyframe != 3) ++alone;
+  while (s.map.landmark(alone).observations.size() != 1 || s.map.landmark(alone).observations[0].keyframe != 3) ++alone;
   const Eigen::Vector3d in_camera = s.map.keyframe(3).view.T_map_camera.inverse() * s.map.landmark(alone).position_m;
   extract.problem.T_map_camera[3].translation += Eigen::Vector3d(0.1, 0.2, 0.3);
   write_back(extract, &s.map);

@@ -43,11 +43,11 @@ void expect_consistent(const SlamMap& map) {
     const SlamLandmark& landmark = map.landmark(i);
     num_alive += landmark.is_alive() ? 1U : 0U;
     EXPECT_TRUE(landmark.merged_into == kNoLandmark || !landmark.is_alive());
-    for (std::size_t s = 0; s < landmark.sightings.size(); ++s) {
-      const Sighting& sighting = landmark.sightings[s];
-      EXPECT_TRUE(s == 0 || landmark.sightings[s - 1].keyframe < sighting.keyframe);
-      ASSERT_LT(sighting.keyframe, map.keyframes().size());
-      ASSERT_EQ(map.keyframe(sighting.keyframe).landmark_of_feature[sighting.feature], static_cast<std::int32_t>(i));
+    for (std::size_t s = 0; s < landmark.observations.size(); ++s) {
+      const Observation& observation = landmark.observations[s];
+      EXPECT_TRUE(s == 0 || landmark.observations[s - 1].keyframe < observation.keyframe);
+      ASSERT_LT(observation.keyframe, map.keyframes().size());
+      ASSERT_EQ(map.keyframe(observation.keyframe).landmark_of_feature[observation.feature], static_cast<std::int32_t>(i));
     }
   }
   EXPECT_EQ(num_alive, map.num_alive_landmarks());
@@ -57,8 +57,10 @@ void expect_consistent(const SlamMap& map) {
     for (std::uint32_t f = 0; f < keyframe.landmark_of_feature.size(); ++f) {
       if (keyframe.landmark_of_feature[f] == kNoLandmark) continue;
       ++num_landmarks;
-      const auto& sightings = map.landmark(static_cast<std::uint32_t>(keyframe.landmark_of_feature[f])).sightings;
-      EXPECT_EQ(std::count_if(sightings.begin(), sightings.end(), [&](const Sighting& s) { return s.keyframe == k && s.feature == f; }), 1);
+      const auto& observations = map.landmark(static_cast<std::uint32_t>(keyframe.landmark_of_feature[f])).observations;
+      EXPECT_EQ(
+          std::count_if(observations.begin(), observations.end(), [&](const Observation& s) { return s.keyframe == k && s.feature == f; }),
+          1);
     }
     EXPECT_EQ(num_landmarks, keyframe.num_landmarks);
   }
@@ -88,31 +90,31 @@ TEST(SlamMap, AFeatureShowsOneLandmarkAndAKeyframeSeesItOnce) {
   SlamMap map(test_camera(), 1.2F, 8);
   const std::uint32_t k0 = map.add_keyframe(0, 0, grid_view(20, 2.0F, &rng)), k1 = map.add_keyframe(1, 0, grid_view(20, 2.0F, &rng));
   const std::uint32_t a = map.add_landmark({k0, 3}), b = map.add_landmark({k0, 4});
-  map.add_sighting(a, {k0, 5});  // seen already
-  map.add_sighting(b, {k1, 6});
-  map.add_sighting(a, {k1, 6});  // taken
-  EXPECT_EQ(map.landmark(a).sightings.size(), 1U);
-  EXPECT_EQ(map.landmark(b).sightings.size(), 2U);
-  map.remove_sighting(a, k1);  // never saw it
+  map.add_observation(a, {k0, 5});  // seen already
+  map.add_observation(b, {k1, 6});
+  map.add_observation(a, {k1, 6});  // taken
+  EXPECT_EQ(map.landmark(a).observations.size(), 1U);
+  EXPECT_EQ(map.landmark(b).observations.size(), 2U);
+  map.remove_observation(a, k1);  // never saw it
   EXPECT_EQ(map.num_alive_landmarks(), 2U);
-  map.remove_sighting(a, k0);
+  map.remove_observation(a, k0);
   EXPECT_EQ(map.num_alive_landmarks(), 1U);
   EXPECT_EQ(map.resolve(a), kNoLandmark);
   EXPECT_EQ(map.resolve(b), static_cast<std::int32_t>(b));
   expect_consistent(map);
 }
 
-TEST(SlamMap, MergingKeepsTheSightingsOfTheOneThatStays) {
+TEST(SlamMap, MergingKeepsTheObservationsOfTheOneThatStays) {
   std::mt19937_64 rng(1);
   SlamMap map(test_camera(), 1.2F, 8);
   for (int k = 0; k < 3; ++k) map.add_keyframe(static_cast<std::uint64_t>(k), 0, grid_view(20, 2.0F, &rng));
   const std::uint32_t a = map.add_landmark({0, 1}), b = map.add_landmark({1, 2}), c = map.add_landmark({2, 9});
-  map.add_sighting(a, {1, 3});
-  map.add_sighting(b, {2, 4});
+  map.add_observation(a, {1, 3});
+  map.add_observation(b, {2, 4});
   map.merge(b, a);
-  ASSERT_EQ(map.landmark(a).sightings.size(), 3U);
-  EXPECT_EQ(map.landmark(a).sightings[1].feature, 3U);  // its own in keyframe 1
-  EXPECT_EQ(map.landmark(a).sightings[2].feature, 4U);  // the other's in keyframe 2
+  ASSERT_EQ(map.landmark(a).observations.size(), 3U);
+  EXPECT_EQ(map.landmark(a).observations[1].feature, 3U);  // its own in keyframe 1
+  EXPECT_EQ(map.landmark(a).observations[2].feature, 4U);  // the other's in keyframe 2
   EXPECT_EQ(map.keyframe(1).landmark_of_feature[2], kNoLandmark);
   EXPECT_EQ(map.resolve(b), static_cast<std::int32_t>(a));
   map.merge(a, c);
@@ -132,7 +134,7 @@ TEST(SlamMap, StaysConsistentUnderRandomOperations) {
       map.add_keyframe(static_cast<std::uint64_t>(step), 0, grid_view(60, 2.0F, &rng));
       continue;
     }
-    const Sighting s{below(map.keyframes().size()), below(60)};
+    const Observation s{below(map.keyframes().size()), below(60)};
     if (what < 6 || map.landmarks().empty()) {
       if (map.keyframe(s.keyframe).landmark_of_feature[s.feature] == kNoLandmark) map.add_landmark(s);
       continue;
@@ -140,9 +142,9 @@ TEST(SlamMap, StaysConsistentUnderRandomOperations) {
     const std::int32_t landmark = map.resolve(below(map.landmarks().size())), other = map.resolve(below(map.landmarks().size()));
     if (landmark == kNoLandmark || other == kNoLandmark) continue;
     if (what < 12)
-      map.add_sighting(static_cast<std::uint32_t>(landmark), s);
+      map.add_observation(static_cast<std::uint32_t>(landmark), s);
     else if (what < 16)
-      map.remove_sighting(static_cast<std::uint32_t>(landmark), s.keyframe);
+      map.remove_observation(static_cast<std::uint32_t>(landmark), s.keyframe);
     else
       map.merge(static_cast<std::uint32_t>(landmark), static_cast<std::uint32_t>(other));
     if (step % 200 == 0) expect_consistent(map);
@@ -165,7 +167,7 @@ TEST(SlamMap, CovisibleCountsSharedLandmarksAndOrdersThem) {
   for (std::uint32_t f = 0; f < 50; ++f) {
     const std::uint32_t landmark = map.add_landmark({0, f});
     for (std::uint32_t k = 1; k < 5; ++k) {
-      if (f < shared[k]) map.add_sighting(landmark, {k, f});
+      if (f < shared[k]) map.add_observation(landmark, {k, f});
     }
   }
   const auto all = map.covisible(0, 1);
@@ -194,7 +196,7 @@ TEST(SlamMap, TheDescriptorIsTheOneClosestToAllOthers) {
     map.add_keyframe(0, 0, view);
   }
   const std::uint32_t landmark = map.add_landmark({0, 0});
-  for (std::uint32_t k = 1; k < 4; ++k) map.add_sighting(landmark, {k, 0});
+  for (std::uint32_t k = 1; k < 4; ++k) map.add_observation(landmark, {k, 0});
   map.summarize(landmark);
   EXPECT_EQ(map.landmark(landmark).descriptor, middle);
 }
@@ -222,7 +224,8 @@ TEST(SlamMap, ScaleAndNoiseGrowWithTheLevel) {
   EXPECT_FLOAT_EQ(map.levels().scale(0), 1);
   EXPECT_NEAR(map.levels().scale(7), std::pow(1.2, 7), 1e-4);
   EXPECT_EQ(map.levels().scale(200), map.levels().scale(7));  // levels from outside are not believed
-  for (std::uint8_t level = 1; level < 8; ++level) EXPECT_GT(map.levels().sigma_px(level), map.levels().sigma_px(static_cast<std::uint8_t>(level - 1)));
+  for (std::uint8_t level = 1; level < 8; ++level)
+    EXPECT_GT(map.levels().sigma_px(level), map.levels().sigma_px(static_cast<std::uint8_t>(level - 1)));
 }
 
 }  // namespace

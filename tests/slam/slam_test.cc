@@ -48,7 +48,7 @@ TEST(Slam, TracksALoopAroundARoom) {
   ASSERT_EQ(result.poses.size(), 140U);
   EXPECT_LT(trajectory_error_m(result, 0, walk.T_world_camera), 0.01);
   EXPECT_LT(result.segments[0].fit.median_px, 0.7);
-  EXPECT_GT(result.segments[0].fit.num_sightings, 3000U);
+  EXPECT_GT(result.segments[0].fit.num_observations, 3000U);
 
   // Reports, counts and poses tell the same story.
   std::uint32_t num_keyframes = 0, num_loops = 0;
@@ -283,8 +283,8 @@ TEST(Slam, FarLandmarksCarryTrackingWithoutDepth) {
     std::uint32_t num_far = 0;
     for (const SlamLandmark& landmark : slam.map().landmarks()) {
       if (!landmark.is_alive()) continue;
-      num_far += std::none_of(landmark.sightings.begin(), landmark.sightings.end(),
-                              [&](const Sighting& s) { return slam.map().keyframe(s.keyframe).view.depth_m[s.feature] > 0; })
+      num_far += std::none_of(landmark.observations.begin(), landmark.observations.end(),
+                              [&](const Observation& s) { return slam.map().keyframe(s.keyframe).view.depth_m[s.feature] > 0; })
                      ? 1U
                      : 0U;
     }

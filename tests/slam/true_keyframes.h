@@ -27,12 +27,12 @@ struct TrueKeyframes {
     shown.push_back(viewer.shown());
     return insert_keyframe(frame, segment, view, {}, &map);
   }
-  /// Are all sightings of the landmark of the same point?
+  /// Are all observations of the landmark of the same point?
   [[nodiscard]] bool is_one_point(const SlamLandmark& landmark) const {
-    return std::all_of(landmark.sightings.begin(), landmark.sightings.end(),
-                       [&](const Sighting& s) { return point(s) == point(landmark.sightings[0]); });
+    return std::all_of(landmark.observations.begin(), landmark.observations.end(),
+                       [&](const Observation& s) { return point(s) == point(landmark.observations[0]); });
   }
-  [[nodiscard]] std::uint32_t point(const Sighting& s) const { return shown[s.keyframe][s.feature]; }
+  [[nodiscard]] std::uint32_t point(const Observation& s) const { return shown[s.keyframe][s.feature]; }
 };
 
 /// A hall of 14 m, of which the depth camera reaches 4.5.

@@ -132,7 +132,7 @@ void LoopCloser::move_to(const std::vector<Rigid3>& T_map_keyframe) {
   for (std::uint32_t i = 0; i < map_->landmarks().size(); ++i) {
     SlamLandmark& landmark = map_->landmark(i);
     if (!landmark.is_alive()) continue;
-    const std::uint32_t k = landmark.sightings.front().keyframe;
+    const std::uint32_t k = landmark.observations.front().keyframe;
     const Rigid3 T_new_old = T_map_keyframe[k] * map_->keyframe(k).view.T_map_camera.inverse();
     landmark.position_m = T_new_old * landmark.position_m;
     landmark.direction = T_new_old.rotation * landmark.direction;
@@ -150,7 +150,7 @@ void LoopCloser::fuse(const std::vector<LoopMatch>& matches) {
       if (present != kNoLandmark)
         map_->merge(static_cast<std::uint32_t>(present), static_cast<std::uint32_t>(into));
       else
-        map_->add_sighting(static_cast<std::uint32_t>(into), {match.keyframe, pair.feature});
+        map_->add_observation(static_cast<std::uint32_t>(into), {match.keyframe, pair.feature});
     }
   }
   fuse_surroundings(matches.back());

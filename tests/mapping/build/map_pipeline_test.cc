@@ -127,7 +127,7 @@ TEST(MapPipeline, AStoppedBuildIsAMapOfTheFirstPartAndGoesOnFromThere) {
   ASSERT_TRUE(build_map(request, all, &summary).is_ok());
   EXPECT_EQ(all.count("frame"), kFrames);
   EXPECT_EQ(all.count("mapping view"), kFrames);
-  EXPECT_EQ(all.count("comparing maps of half of the sightings each ..."), 1U);
+  EXPECT_EQ(all.count("comparing maps of half of the observations each ..."), 1U);
   EXPECT_TRUE(all.is_monotone());
 
   request.map_path = folder / "half.cmap";

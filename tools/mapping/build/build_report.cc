@@ -38,8 +38,8 @@ void append_slam(const BuildSummary& s, std::string* text) {
   append_text(text, "%-22s%u, of %u views each on average\n", "SLAM keyframes", c.num_keyframes,
               c.num_views / std::max(c.num_keyframes, 1U));
   append_text(text, "%-22s%u closed, %u refused\n", "loops", c.num_loops, c.num_loops_refused);
-  append_text(text, "%-22smedian %.2f px, 90 %% below %.2f px (%llu sightings)\n", "reprojection error", slam.fit.median_px,
-              slam.fit.p90_px, llu(slam.fit.num_sightings));
+  append_text(text, "%-22smedian %.2f px, 90 %% below %.2f px (%llu observations)\n", "reprojection error", slam.fit.median_px,
+              slam.fit.p90_px, llu(slam.fit.num_observations));
   append_text(text, "%-22smedian %.1f mm\n", "depth error", 1000 * slam.fit.median_depth_m);
   append_text(text, "%-22s%s\n", "vertical", vertical_text(s).c_str());
 }
@@ -112,7 +112,7 @@ std::string format_table(const BuildSummary& s) {
   append_text(&text, "%-22s%u\n", "words", b.num_words);
   append_text(&text, "%-22s%llu bytes, %.1f a landmark\n", "size", llu(b.file_bytes), bytes_per_landmark(s));
   if (s.bend.sigma_m > 0) {
-    append_text(&text, "%-22s%.1f cm, %.2f deg per axis (maps of half of the sightings differ by twice that)\n", "bend of the map",
+    append_text(&text, "%-22s%.1f cm, %.2f deg per axis (maps of half of the observations differ by twice that)\n", "bend of the map",
                 100 * s.bend.sigma_m, degrees(s.bend.sigma_rad));
   }
   if (b.num_consistency_pairs > 0) {

@@ -195,7 +195,7 @@ Status place_walk(const BuildRequest& request, Slam* slam, Walk* walk, BuildSumm
 
 /// What every pose in the maps will be uncertain by.
 void measure_bend(const Slam& slam, WorkObserver& observer, SlamResult* result) {
-  observer.show("comparing maps of half of the sightings each ...", 0, 0, "");
+  observer.show("comparing maps of half of the observations each ...", 0, 0, "");
   for (SlamResult::Segment& segment : result->segments) {
     if (segment.num_keyframes >= kMinSegmentKeyframes) segment.uncertainty = slam.uncertainty(segment.id);
   }

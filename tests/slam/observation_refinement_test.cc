@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A textured wall seen by cameras at known poses, with features a pixel off: refined sightings must be of one point again.
-#include "core/slam/sighting_refinement.h"
+// A textured wall seen by cameras at known poses, with features a pixel off: refined observations must be of one point again.
+#include "core/slam/observation_refinement.h"
 
 #include <gtest/gtest.h>
 
@@ -74,19 +74,19 @@ Rigid3 standing_at(double x, double y, double z, double turn_rad) {
   return {exp_so3({0.3 * turn_rad, turn_rad, 0.5 * turn_rad}), {x, y, z}};
 }
 
-/// How far apart the places on the wall are that the sightings of a landmark show, in pixels of level 0; median over landmarks.
+/// How far apart the places on the wall are that the observations of a landmark show, in pixels of level 0; median over landmarks.
 double spread_px(const SlamMap& map, const std::vector<Rigid3>& T_map_camera_true) {
   std::vector<double> spreads;
   for (const SlamLandmark& landmark : map.landmarks()) {
     double sum = 0;
     Eigen::Vector3d first = Eigen::Vector3d::Zero();
-    for (const Sighting& s : landmark.sightings) {
+    for (const Observation& s : landmark.observations) {
       const Eigen::Vector3d place =
           TexturedWall::hit(T_map_camera_true[s.keyframe], map.keyframe(s.keyframe).view.normalized[s.feature].cast<double>());
-      if (&s == &landmark.sightings.front()) first = place;
+      if (&s == &landmark.observations.front()) first = place;
       sum += (place - first).norm() / kTextureUnit;
     }
-    spreads.push_back(sum / static_cast<double>(landmark.sightings.size() - 1));
+    spreads.push_back(sum / static_cast<double>(landmark.observations.size() - 1));
   }
   std::nth_element(spreads.begin(), spreads.begin() + static_cast<std::ptrdiff_t>(spreads.size() / 2), spreads.end());
   return spreads[spreads.size() / 2];
@@ -118,17 +118,17 @@ struct Scene {
         if (keyframe == 0)
           map.add_landmark({0, i});
         else
-          map.add_sighting(i, {keyframe, i});
+          map.add_observation(i, {keyframe, i});
       }
     }
     for (std::uint32_t i = 0; i < points.size(); ++i) map.summarize(i);
   }
 };
 
-TEST(SightingRefinement, SightingsBecomeOnePoint) {
+TEST(ObservationRefinement, ObservationsBecomeOnePoint) {
   Scene scene;
   const double before = spread_px(scene.map, scene.T_map_camera_true);
-  const SightingRefinementReport report = refine_sightings(&scene.map);
+  const ObservationRefinementReport report = refine_observations(&scene.map);
   const double after = spread_px(scene.map, scene.T_map_camera_true);
   EXPECT_EQ(report.num_references, 150U);
   EXPECT_GT(report.num_refined(), 350U);  // of 450
@@ -136,19 +136,19 @@ TEST(SightingRefinement, SightingsBecomeOnePoint) {
   EXPECT_LT(after, 0.2 * before);
 }
 
-TEST(SightingRefinement, DoingItAgainChangesNothing) {
+TEST(ObservationRefinement, DoingItAgainChangesNothing) {
   Scene scene;
-  (void)refine_sightings(&scene.map);
+  (void)refine_observations(&scene.map);
   const SlamMap once = scene.map;
-  (void)refine_sightings(&scene.map);
+  (void)refine_observations(&scene.map);
   for (std::uint32_t k = 0; k < once.keyframes().size(); ++k)
     EXPECT_EQ(once.keyframe(k).view.normalized, scene.map.keyframe(k).view.normalized);
 }
 
-TEST(SightingRefinement, WithoutPatchesEverythingStays) {
+TEST(ObservationRefinement, WithoutPatchesEverythingStays) {
   Scene scene(false);
   const SlamMap before = scene.map;
-  const SightingRefinementReport report = refine_sightings(&scene.map);
+  const ObservationRefinementReport report = refine_observations(&scene.map);
   EXPECT_EQ(report.num_references, 0U);
   for (std::uint32_t k = 0; k < before.keyframes().size(); ++k)
     EXPECT_EQ(before.keyframe(k).view.normalized, scene.map.keyframe(k).view.normalized);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/slam/sighting_refinement.h"
+#include "core/slam/observation_refinement.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMaxMagnification = 2.0;  // of area and its inverse, between two patches
 
-/// A sighting and what belongs to it.
+/// A observation and what belongs to it.
 struct Seen {
   const SlamKeyframe& keyframe;
   std::uint32_t feature;
@@ -21,25 +21,25 @@ struct Seen {
   Eigen::Vector3d p_camera;  ///< the landmark
 };
 
-Seen seen_by(const SlamMap& map, const Sighting& sighting, const Eigen::Vector3d& p_map) {
-  const SlamKeyframe& keyframe = map.keyframe(sighting.keyframe);
-  const double scale = map.levels().scale(keyframe.view.features.keypoints[sighting.feature].level);
-  return {keyframe, sighting.feature, scale, keyframe.view.T_map_camera.inverse() * p_map};
+Seen seen_by(const SlamMap& map, const Observation& observation, const Eigen::Vector3d& p_map) {
+  const SlamKeyframe& keyframe = map.keyframe(observation.keyframe);
+  const double scale = map.levels().scale(keyframe.view.features.keypoints[observation.feature].level);
+  return {keyframe, observation.feature, scale, keyframe.view.T_map_camera.inverse() * p_map};
 }
 
-/// The sighting from the middle of all directions and distances: the others are the least distorted beside it.
+/// The observation from the middle of all directions and distances: the others are the least distorted beside it.
 std::size_t choose_reference(const SlamMap& map, const SlamLandmark& landmark) {
   const double middle = 0.5 * (std::log(landmark.min_reference_m) + std::log(landmark.max_reference_m));
   std::size_t best = 0;
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < landmark.sightings.size(); ++i) {
-    const Sighting& sighting = landmark.sightings[i];
-    const SlamKeyframe& keyframe = map.keyframe(sighting.keyframe);
+  for (std::size_t i = 0; i < landmark.observations.size(); ++i) {
+    const Observation& observation = landmark.observations[i];
+    const SlamKeyframe& keyframe = map.keyframe(observation.keyframe);
     const Eigen::Vector3d to_camera = keyframe.view.T_map_camera.translation - landmark.position_m;
     const double distance = to_camera.norm();
     const double turned = std::acos(std::clamp(to_camera.dot(landmark.direction) / distance, -1.0, 1.0));
     const double scaled =
-        std::abs(std::log(distance * map.levels().scale(keyframe.view.features.keypoints[sighting.feature].level)) - middle);
+        std::abs(std::log(distance * map.levels().scale(keyframe.view.features.keypoints[observation.feature].level)) - middle);
     if (turned + scaled < least) {
       least = turned + scaled;
       best = i;
@@ -48,7 +48,7 @@ std::size_t choose_reference(const SlamMap& map, const SlamLandmark& landmark) {
   return best;
 }
 
-/// How pixels around the target's sighting lie around the reference's, taking the surface to face the reference. The focal
+/// How pixels around the target's observation lie around the reference's, taking the surface to face the reference. The focal
 /// length cancels.
 std::optional<Eigen::Matrix2d> warp(const Seen& reference, const Seen& target) {
   if (reference.p_camera.z() < 0.1 || target.p_camera.z() < 0.1) return std::nullopt;
@@ -71,28 +71,29 @@ PatchAlignment align(const Seen& reference, const Seen& target) {
 
 }  // namespace
 
-SightingRefinementReport refine_sightings(SlamMap* map) {
-  SightingRefinementReport report;
+ObservationRefinementReport refine_observations(SlamMap* map) {
+  ObservationRefinementReport report;
   const UndistortionTable rays(map->camera().color);
   for (std::uint32_t index = 0; index < map->landmarks().size(); ++index) {
     const SlamLandmark& landmark = map->landmark(index);
-    if (landmark.sightings.size() < 2) continue;
+    if (landmark.observations.size() < 2) continue;
     const std::size_t chosen = choose_reference(*map, landmark);
-    const Seen reference = seen_by(*map, landmark.sightings[chosen], landmark.position_m);
+    const Seen reference = seen_by(*map, landmark.observations[chosen], landmark.position_m);
     if (reference.keyframe.view.patches.empty()) continue;
     ++report.num_references;
-    for (std::size_t i = 0; i < landmark.sightings.size(); ++i) {
-      const Sighting& sighting = landmark.sightings[i];
-      const Seen target = seen_by(*map, sighting, landmark.position_m);
+    for (std::size_t i = 0; i < landmark.observations.size(); ++i) {
+      const Observation& observation = landmark.observations[i];
+      const Seen target = seen_by(*map, observation, landmark.position_m);
       if (target.keyframe.view.patches.empty()) continue;
-      const Keypoint& found = target.keyframe.view.features.keypoints[sighting.feature];
+      const Keypoint& found = target.keyframe.view.features.keypoints[observation.feature];
       Eigen::Vector2f shift_px = Eigen::Vector2f::Zero();
       if (i != chosen) {
         const PatchAlignment aligned = align(reference, target);
         ++report.num_by_verdict[static_cast<std::size_t>(aligned.verdict)];
         if (aligned.verdict == PatchVerdict::kAligned) shift_px = (target.scale * aligned.shift_px).cast<float>();
       }
-      map->keyframe(sighting.keyframe).view.normalized[sighting.feature] = rays.undistort(found.u + shift_px.x(), found.v + shift_px.y());
+      map->keyframe(observation.keyframe).view.normalized[observation.feature] =
+          rays.undistort(found.u + shift_px.x(), found.v + shift_px.y());
     }
   }
   return report;
