@@ -54,7 +54,7 @@ struct MapData {
   RgbdCamera camera;  ///< that the map was made with
   float orb_scale_factor = 1.2F;
   std::uint32_t orb_num_levels = 8;
-  double pose_sigma_m = 0;    ///< what the mapping poses are off by, between views and by the bend of the map, one
+  double pose_sigma_m = 0;    ///< what the mapping poses are off by, between views and by the deformation of the map, one
   double pose_sigma_rad = 0;  ///< standard deviation per axis: no pose in this map can be better than that
   std::vector<MapLandmark> landmarks;
   std::vector<MapKeyframe> keyframes;

@@ -116,7 +116,7 @@ void fit_rigid_part(const MapData& b, const std::vector<Rigid3>& T_a_keyframe, d
   report->covariance = alignment.covariance * (10 * spread);
   for (std::size_t k = 0; k < T_a_keyframe.size(); ++k) {
     const Eigen::Vector3d rigid = alignment.T_a_b * b.keyframes[k].T_map_camera.translation;
-    report->bend_m = std::max(report->bend_m, (T_a_keyframe[k].translation - rigid).norm());
+    report->deformation_m = std::max(report->deformation_m, (T_a_keyframe[k].translation - rigid).norm());
   }
 }
 

@@ -17,7 +17,7 @@ struct MapAlignmentReport {
   Rigid3 T_a_b;                             ///< the rigid part of the motion
   Matrix6d covariance = Matrix6d::Zero();   ///< of T_a_b, see pose_error()
   double residual_m = 0, residual_rad = 0;  ///< median over the fixes: from where the graph puts their keyframes
-  double bend_m = 0;                        ///< largest step of a keyframe beyond T_a_b
+  double deformation_m = 0;                 ///< largest step of a keyframe beyond T_a_b
 };
 
 /// Moves poses and landmarks of `b` in place; lists, words and datum are left alone. `fixes` is not empty.

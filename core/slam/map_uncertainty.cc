@@ -12,7 +12,7 @@ namespace camloc {
 namespace {
 
 constexpr int kNumSplits = 2;             // of all landmarks and links into two halves
-constexpr std::size_t kMinKeyframes = 4;  // fewer are no map that could bend
+constexpr std::size_t kMinKeyframes = 4;  // fewer are no map that could deformation
 constexpr int kMaxIterations = 12;        // of each adjustment; they begin where the whole map is
 
 /// Which half a landmark or a link goes to.

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How far the keyframes of an adjusted map are from where they should be, once the map as a whole lies as well as it can: its bend,
+// How far the keyframes of an adjusted map are from where they should be, once the map as a whole lies as well as it can: its deformation,
 // and no pose that is found in it can be better. Neither the residuals nor the normal equations tell, since they know nothing of
 // errors that neighbouring observations share. What tells is how far two maps disagree that are adjusted to half of the evidence
 // each (McCarthy, "Pseudo-replication: half samples", 1969). What both halves have in common is not seen: errors of the calibration,

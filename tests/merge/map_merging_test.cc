@@ -101,7 +101,7 @@ TEST_F(MapMergingTest, BendsTheSecondMapOntoTheFirst) {
   drifting.curvature_per_m = 0.002;  // 0.4 m beside the corridor at its end
   const auto merged = merge(make_day(corridor, {}), make_day(corridor, drifting));
   ASSERT_TRUE(merged.is_ok()) << merged.status().message();
-  EXPECT_GT(report_.alignment.bend_m, 0.05);
+  EXPECT_GT(report_.alignment.deformation_m, 0.05);
   EXPECT_GT(share_on_points(merged.value(), corridor, 0.03), 0.97);
   EXPECT_GT(report_.num_fused, report_.num_added);
 }

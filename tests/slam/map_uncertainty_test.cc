@@ -48,7 +48,7 @@ Adjusted adjust(const BundleWorld& world) {
   return adjusted;
 }
 
-/// Mean squares over several worlds: one map alone has few directions that it can bend in.
+/// Mean squares over several worlds: one map alone has few directions that it can deformation in.
 struct Compared {
   MapUncertainty estimate, truth;
 };

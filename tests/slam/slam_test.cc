@@ -75,11 +75,11 @@ TEST(Slam, TellsHowMuchItsMapIsBent) {
   const SlamResult result = slam.finish();
   ASSERT_EQ(result.segments.size(), 1U);
   const double error_m = trajectory_error_m(result, result.segments.front().id, walk.T_world_camera) / std::sqrt(3.0);
-  const MapUncertainty bend = slam.uncertainty(result.segments.front().id);
-  EXPECT_GT(bend.sigma_m, error_m / 3);
-  EXPECT_LT(bend.sigma_m, error_m * 3);
-  EXPECT_GT(bend.sigma_rad, 0);
-  EXPECT_LT(bend.sigma_rad, 0.01);
+  const MapUncertainty deformation = slam.uncertainty(result.segments.front().id);
+  EXPECT_GT(deformation.sigma_m, error_m / 3);
+  EXPECT_LT(deformation.sigma_m, error_m * 3);
+  EXPECT_GT(deformation.sigma_rad, 0);
+  EXPECT_LT(deformation.sigma_rad, 0.01);
   EXPECT_EQ(slam.uncertainty(77).sigma_m, 0);
 }
 

@@ -31,7 +31,7 @@ def main():
         summary = json.loads(run(CAMLOC_MAP, "build", "--sequence", mapping, "--camera", camera, "--out", flat, "--trajectory", walk, "--json"))
         slam = summary["slam"]   # six frames a second leave little overlap in a turn before a bare wall
         assert slam["lost"] <= 0.05 * slam["views"] and slam["loops"]["closed"] > 0 and not summary["submaps"], summary
-        assert 0.0003 < summary["bend"]["sigma_m"] < 0.02, summary["bend"]
+        assert 0.0003 < summary["deformation"]["sigma_m"] < 0.02, summary["deformation"]
         assert errors(walk, mapping, "--align", "se3")["translation_m"]["rmse"] < 0.02
 
         scan = json.loads(run(CAMLOC_MAP, "eval", flat, "--lidar", work / "sim" / "lidar.ply", "--json"))

@@ -49,7 +49,7 @@ Status check_arguments(const BuildArguments& arguments) {
     return {ErrorCode::kInvalid, "--points: goes with a build without --poses; 'camloc map georef' fits a finished map"};
   if (!request.extend_path.empty()) {
     if (!request.trajectory_path.empty())
-      return {ErrorCode::kInvalid, "--trajectory: a recording that extends a map is bent onto it; build it alone for its trajectory"};
+      return {ErrorCode::kInvalid, "--trajectory: a recording that extends a map is deformed onto it; build it alone for its trajectory"};
     if (const auto extended = MapView::open(request.extend_path); !extended.is_ok()) return extended.status().with_context("--extend");
   }
   if (request.is_resumed && !std::filesystem::exists(view_log_path(request.map_path)))

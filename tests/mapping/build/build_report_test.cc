@@ -37,20 +37,20 @@ TEST(BuildReport, GivenPosesNeedNoSlam) {
   EXPECT_TRUE(contains(table, "5000 bytes, 100.0 a landmark")) << table;
   EXPECT_TRUE(contains(table, "2.0 cm, 0.57 deg per axis between views (12 pairs)")) << table;
   EXPECT_TRUE(contains(table, "9.0 s, 9 frames/s")) << table;
-  EXPECT_FALSE(contains(table, "frames tracked") || contains(table, "interrupted") || contains(table, "bend"));
+  EXPECT_FALSE(contains(table, "frames tracked") || contains(table, "interrupted") || contains(table, "deformation"));
   const auto json = nlohmann::json::parse(format_json(summary()), nullptr, false);
   EXPECT_EQ(json["frames"]["used"], 81);
   EXPECT_EQ(json["frames"]["broken"], 2);
   EXPECT_EQ(json["landmarks"]["before"], 80);
   EXPECT_EQ(json["bytes_per_landmark"], 100.0);
-  EXPECT_TRUE(json["bend"].is_null());
+  EXPECT_TRUE(json["deformation"].is_null());
   EXPECT_FALSE(json.contains("slam") || json.contains("merge") || json.contains("survey"));
 }
 
 TEST(BuildReport, AWalkHasItsLossesAndWeakSpots) {
   BuildSummary s = summary();
   s.is_partial = true;
-  s.bend = {0.03, 0.02};
+  s.deformation = {0.03, 0.02};
   SlamSummary& slam = s.slam.emplace();
   slam.counts.num_views = 90, slam.counts.num_lost = 10, slam.counts.num_losses = 2, slam.counts.num_keyframes = 30;
   slam.counts.num_loops = 3, slam.counts.num_loops_refused = 1;
@@ -77,7 +77,7 @@ TEST(BuildReport, AWalkHasItsLossesAndWeakSpots) {
   EXPECT_EQ(json["slam"]["loops"]["closed"], 3);
   EXPECT_EQ(json["slam"]["weak_spots"].size(), 10U);
   EXPECT_EQ(json["submaps"][1]["map"], "room.2.cmap");
-  EXPECT_EQ(json["bend"]["sigma_m"], 0.03);
+  EXPECT_EQ(json["deformation"]["sigma_m"], 0.03);
   EXPECT_EQ(json["is_partial"], true);
 }
 

@@ -67,11 +67,11 @@ TEST(MapPipeline, AWalkBecomesAMapAndATrajectory) {
   // Poses found in the map say how much it is bent.
   const auto map = MapView::open(folder / "room.cmap");
   ASSERT_TRUE(map.is_ok());
-  EXPECT_GT(summary.bend.sigma_m, 0.0001);
-  EXPECT_LT(summary.bend.sigma_m, 0.01);
-  EXPECT_NEAR(map->info().pose_sigma_m, std::hypot(summary.bend.sigma_m, summary.consistency_sigma_m), 1e-12);
-  EXPECT_NEAR(map->info().pose_sigma_rad, std::hypot(summary.bend.sigma_rad, summary.consistency_sigma_rad), 1e-12);
-  EXPECT_NE(format_table(summary).find("bend of the map"), std::string::npos);
+  EXPECT_GT(summary.deformation.sigma_m, 0.0001);
+  EXPECT_LT(summary.deformation.sigma_m, 0.01);
+  EXPECT_NEAR(map->info().pose_sigma_m, std::hypot(summary.deformation.sigma_m, summary.consistency_sigma_m), 1e-12);
+  EXPECT_NEAR(map->info().pose_sigma_rad, std::hypot(summary.deformation.sigma_rad, summary.consistency_sigma_rad), 1e-12);
+  EXPECT_NE(format_table(summary).find("deformation of the map"), std::string::npos);
 }
 
 /// The log of a whole build, as a build that died just before its end would have left it.

@@ -111,9 +111,9 @@ std::string format_table(const BuildSummary& s) {
   append_text(&text, "%-22s%u of %u views cover all landmarks\n", "keyframes", b.num_keyframes, b.num_keyframes_before);
   append_text(&text, "%-22s%u\n", "words", b.num_words);
   append_text(&text, "%-22s%llu bytes, %.1f a landmark\n", "size", llu(b.file_bytes), bytes_per_landmark(s));
-  if (s.bend.sigma_m > 0) {
-    append_text(&text, "%-22s%.1f cm, %.2f deg per axis (maps of half of the observations differ by twice that)\n", "bend of the map",
-                100 * s.bend.sigma_m, degrees(s.bend.sigma_rad));
+  if (s.deformation.sigma_m > 0) {
+    append_text(&text, "%-22s%.1f cm, %.2f deg per axis (maps of half of the observations differ by twice that)\n",
+                "deformation of the map", 100 * s.deformation.sigma_m, degrees(s.deformation.sigma_rad));
   }
   if (b.num_consistency_pairs > 0) {
     append_text(&text, "%-22s%.1f cm, %.2f deg per axis between views (%u pairs)\n", "pose inconsistency", 100 * s.consistency_sigma_m,
@@ -160,8 +160,9 @@ std::string format_json(const BuildSummary& s) {
   json["bytes_per_landmark"] = bytes_per_landmark(s);
   json["pose_consistency"] = {
       {"pairs", b.num_consistency_pairs}, {"sigma_m", s.consistency_sigma_m}, {"sigma_deg", degrees(s.consistency_sigma_rad)}};
-  json["bend"] = nullptr;
-  if (s.bend.sigma_m > 0) json["bend"] = {{"sigma_m", s.bend.sigma_m}, {"sigma_deg", degrees(s.bend.sigma_rad)}};
+  json["deformation"] = nullptr;
+  if (s.deformation.sigma_m > 0)
+    json["deformation"] = {{"sigma_m", s.deformation.sigma_m}, {"sigma_deg", degrees(s.deformation.sigma_rad)}};
   if (s.merge) json["merge"] = Json::parse(format_json(*s.merge), nullptr, false);
   json["seconds"] = s.seconds;
   return tools::json_text(json);

@@ -50,7 +50,7 @@ struct BuildSummary {
   MapBuildReport build;
   std::optional<MergeSummary> merge;                          ///< with the map that was extended; `build` then counts the recording alone
   double consistency_sigma_m = 0, consistency_sigma_rad = 0;  ///< of the poses between views, per axis
-  MapUncertainty bend;                                        ///< of a map without given poses
+  MapUncertainty deformation;                                 ///< of a map without given poses
   double seconds = 0;
 };
 

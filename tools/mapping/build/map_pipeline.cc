@@ -57,15 +57,15 @@ Status extend_map(const BuildRequest& request, const MapData& recorded, WorkObse
 }
 
 Status finish_map(const BuildRequest& request, const std::string& name, const std::string& path, const std::optional<WcsDatum>& datum,
-                  const MapUncertainty& bend, MapBuilder* builder, WorkObserver& observer, BuildSummary* summary) {
+                  const MapUncertainty& deformation, MapBuilder* builder, WorkObserver& observer, BuildSummary* summary) {
   observer.show("choosing landmarks and keyframes, training words ...", 0, 0, "");
   auto map = builder->finish(&summary->build);
   if (!map.is_ok()) return map.status();
   summary->consistency_sigma_m = map->pose_sigma_m;
   summary->consistency_sigma_rad = map->pose_sigma_rad;
-  summary->bend = bend;
-  map->pose_sigma_m = std::hypot(map->pose_sigma_m, bend.sigma_m);
-  map->pose_sigma_rad = std::hypot(map->pose_sigma_rad, bend.sigma_rad);
+  summary->deformation = deformation;
+  map->pose_sigma_m = std::hypot(map->pose_sigma_m, deformation.sigma_m);
+  map->pose_sigma_rad = std::hypot(map->pose_sigma_rad, deformation.sigma_rad);
   map->name = name;
   map->wcs = datum;
   const bool is_extension = !request.extend_path.empty() && path == request.map_path;
@@ -194,7 +194,7 @@ Status place_walk(const BuildRequest& request, Slam* slam, Walk* walk, BuildSumm
 }
 
 /// What every pose in the maps will be uncertain by.
-void measure_bend(const Slam& slam, WorkObserver& observer, SlamResult* result) {
+void measure_deformation(const Slam& slam, WorkObserver& observer, SlamResult* result) {
   observer.show("comparing maps of half of the observations each ...", 0, 0, "");
   for (SlamResult::Segment& segment : result->segments) {
     if (segment.num_keyframes >= kMinSegmentKeyframes) segment.uncertainty = slam.uncertainty(segment.id);
@@ -264,7 +264,7 @@ Status build_from_walk(const BuildRequest& request, WorkObserver& observer, Buil
     Slam slam(request.camera, walk.pass.slam);  // gone before the map takes its place in memory
     if (const Status found = find_poses(request, &slam, &walk, observer, summary); !found.is_ok()) return found;
     if (const Status placed = place_walk(request, &slam, &walk, summary); !placed.is_ok()) return placed;
-    measure_bend(slam, observer, &walk.result);
+    measure_deformation(slam, observer, &walk.result);
   }
   if (const Status written = write_segments(request, walk, observer, summary); !written.is_ok()) return written;
   if (const Status written = write_trajectory(request, walk.result, summary->slam->counts.num_views); !written.is_ok()) return written;

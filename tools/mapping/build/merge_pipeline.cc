@@ -38,7 +38,7 @@ std::string format_table(const MergeSummary& s) {
               r.num_localized, r.num_keyframes_b, r.registration.num_convincing, r.registration.num_queries,
               r.registration.num_disagreeing);
   append_text(&text, "%-22s%.1f cm, %.2f deg median of those; the second map was bent by up to %.1f cm\n", "disagreement",
-              100 * r.alignment.residual_m, degrees(r.alignment.residual_rad), 100 * r.alignment.bend_m);
+              100 * r.alignment.residual_m, degrees(r.alignment.residual_rad), 100 * r.alignment.deformation_m);
   append_text(&text, "%-22s%u fused, %u added, %u further appearances\n", "landmarks of second", r.num_fused, r.num_added,
               r.num_appearances);
   append_text(&text, "%-22s%u of %u\n", "landmarks kept", m.num_landmarks, m.num_landmarks_before);
@@ -63,8 +63,9 @@ std::string format_json(const MergeSummary& s) {
   json["queries"] = {
       {"asked", r.registration.num_queries}, {"convincing", r.registration.num_convincing}, {"refused", r.registration.num_disagreeing}};
   json["T_first_second"] = {{"translation_m", tools::json_of(T.translation)}, {"rotation_wxyz", tools::json_of(T.rotation)}};
-  json["disagreement"] = {
-      {"median_m", r.alignment.residual_m}, {"median_deg", degrees(r.alignment.residual_rad)}, {"bend_m", r.alignment.bend_m}};
+  json["disagreement"] = {{"median_m", r.alignment.residual_m},
+                          {"median_deg", degrees(r.alignment.residual_rad)},
+                          {"deformation_m", r.alignment.deformation_m}};
   json["landmarks"] = {{"fused", r.num_fused},
                        {"added", r.num_added},
                        {"appearances", r.num_appearances},

@@ -17,7 +17,7 @@
 namespace camloc::mapping {
 namespace {
 
-constexpr double kToleranceM = 0.10, kBendPerM = 0.01;
+constexpr double kToleranceM = 0.10, kDeformationPerM = 0.01;
 
 std::vector<StampedPose> trajectory_of(const SlamResult& result) {
   std::vector<StampedPose> trajectory;
@@ -89,10 +89,10 @@ std::vector<ControlLandmark> control_landmarks(const Survey& survey, const Geore
 }
 
 // A map that no point has held yet may be bent by so much: the points are there to straighten it, and do not lie for that.
-double bend_tolerance_m(const SlamResult& result) {
+double deformation_tolerance_m(const SlamResult& result) {
   Eigen::AlignedBox3d box;
   for (const StampedPose& pose : trajectory_of(result)) box.extend(pose.T_world_camera.translation);
-  return std::max(kToleranceM, kBendPerM * box.diagonal().norm());
+  return std::max(kToleranceM, kDeformationPerM * box.diagonal().norm());
 }
 
 GeorefFit fit_survey(const SurveyRequest& request, const Survey& survey, const RgbdCamera& camera, const SlamResult& result,
@@ -163,7 +163,7 @@ std::optional<WcsDatum> adjust_to_survey(const SurveyRequest& request, const Sur
                                          SlamResult* result, GeorefSummary* summary) {
   summary->points_path = request.points_path;
   summary->observed_path = request.observed_path;
-  summary->fit = fit_survey(request, survey, camera, *result, bend_tolerance_m(*result), &summary->left_out);
+  summary->fit = fit_survey(request, survey, camera, *result, deformation_tolerance_m(*result), &summary->left_out);
   if (!summary->fit.problem.empty()) return std::nullopt;
   *result = slam->adjust_to(control_landmarks(survey, summary->fit, *slam));
   summary->fit = fit_survey(request, survey, camera, *result, kToleranceM, &summary->left_out);
