@@ -86,7 +86,7 @@ const SegmentBegin* DeadReckoning::begin_between(std::uint32_t a, std::uint32_t 
   return nullptr;
 }
 
-double DeadReckoning::strain(std::uint32_t keyframe, std::uint32_t place, const Rigid3& T_map_keyframe) const {
+double DeadReckoning::drift_inconsistency(std::uint32_t keyframe, std::uint32_t place, const Rigid3& T_map_keyframe) const {
   const Rigid3 T_map_now = map_->keyframe(keyframe).view.T_map_camera;
   if (map_->keyframe(place).segment == map_->keyframe(keyframe).segment) {
     const Drift expected = drift(place, keyframe);

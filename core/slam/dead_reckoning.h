@@ -39,9 +39,9 @@ class DeadReckoning {
 
   /// A correction of the keyframe's pose by what it sees of a place, in units of what dead reckoning may be off. Between two
   /// segments it is 0 where the camera can have come that far while it was lost, and where nothing is known. Above
-  /// kMaxStrain it is impossible.
-  static constexpr double kMaxStrain = 3;
-  [[nodiscard]] double strain(std::uint32_t keyframe, std::uint32_t place, const Rigid3& T_map_keyframe) const;
+  /// kMaxDriftInconsistency it is impossible.
+  static constexpr double kMaxDriftInconsistency = 3;
+  [[nodiscard]] double drift_inconsistency(std::uint32_t keyframe, std::uint32_t place, const Rigid3& T_map_keyframe) const;
   /// Could the camera have come within sight of that place?
   [[nodiscard]] bool may_see(std::uint32_t keyframe, std::uint32_t place) const;
   /// How the later one of two segments that followed each other began; null where they did not.

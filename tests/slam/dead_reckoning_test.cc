@@ -23,29 +23,30 @@ struct Way : testing::TrueKeyframes {
       reckoning.note_bridged(k);
     }
   }
-  [[nodiscard]] double strain_of(const Eigen::Vector3d& correction_m, std::uint32_t keyframe = 9, std::uint32_t place = 0) const {
+  [[nodiscard]] double drift_inconsistency_of(const Eigen::Vector3d& correction_m, std::uint32_t keyframe = 9,
+                                              std::uint32_t place = 0) const {
     Rigid3 T = map.keyframe(keyframe).view.T_map_camera;
     T.translation += correction_m;
-    return reckoning.strain(keyframe, place, T);
+    return reckoning.drift_inconsistency(keyframe, place, T);
   }
 };
 
-TEST(DeadReckoning, StrainIsTheCorrectionInUnitsOfTheDriftOfTheWay) {
+TEST(DeadReckoning, DriftInconsistencyIsTheCorrectionInUnitsOfTheDriftOfTheWay) {
   const Way way;
   const SlamNumbers n;
-  EXPECT_EQ(way.strain_of({0, 0, 0}), 0);
-  EXPECT_NEAR(way.strain_of({0, n.loop_drift_m + 9 * n.loop_drift_per_m, 0}), 1, 1e-9);
-  EXPECT_GT(way.strain_of({0, 0.3, 0}, 3, 0), way.strain_of({0, 0.3, 0}, 9, 0));  // less walked, less drift
+  EXPECT_EQ(way.drift_inconsistency_of({0, 0, 0}), 0);
+  EXPECT_NEAR(way.drift_inconsistency_of({0, n.loop_drift_m + 9 * n.loop_drift_per_m, 0}), 1, 1e-9);
+  EXPECT_GT(way.drift_inconsistency_of({0, 0.3, 0}, 3, 0), way.drift_inconsistency_of({0, 0.3, 0}, 9, 0));  // less walked, less drift
   Rigid3 turned = way.map.keyframe(9).view.T_map_camera;
   turned.rotation = turned.rotation * exp_so3({0, 0, n.loop_drift_rad + 9 * n.loop_drift_rad_per_m});
-  EXPECT_NEAR(way.reckoning.strain(9, 0, turned), 1, 1e-6);
+  EXPECT_NEAR(way.reckoning.drift_inconsistency(9, 0, turned), 1, 1e-6);
 }
 
 TEST(DeadReckoning, AWeakLinkOnTheWayLoosensIt) {
   Way way;
-  const double before = way.strain_of({0, 0.3, 0});
+  const double before = way.drift_inconsistency_of({0, 0.3, 0});
   way.reckoning.note_links(5);  // which shares nothing with any other
-  EXPECT_LT(way.strain_of({0, 0.3, 0}), 0.9 * before);
+  EXPECT_LT(way.drift_inconsistency_of({0, 0.3, 0}), 0.9 * before);
 }
 
 TEST(DeadReckoning, APlaceIsInSightOnlyAsFarAsViewsReach) {
@@ -58,12 +59,12 @@ TEST(DeadReckoning, APlaceIsInSightOnlyAsFarAsViewsReach) {
 TEST(DeadReckoning, BetweenSegmentsTheTimeLostLimitsTheWay) {
   Way way(5);
   EXPECT_EQ(way.reckoning.begin_between(0, 7), nullptr);
-  EXPECT_EQ(way.strain_of({-30, 0, 0}, 7, 2), 0);  // nothing is known
+  EXPECT_EQ(way.drift_inconsistency_of({-30, 0, 0}, 7, 2), 0);  // nothing is known
   way.reckoning.begin_segment({5, true, 4, Rigid3(), 1.0});
   ASSERT_NE(way.reckoning.begin_between(0, 7), nullptr);
   ASSERT_NE(way.reckoning.begin_between(7, 0), nullptr);
-  EXPECT_EQ(way.strain_of({0.9, 0, 0}, 7, 2), 0);
-  EXPECT_GT(way.strain_of({1.1, 0, 0}, 7, 2), DeadReckoning::kMaxStrain);
+  EXPECT_EQ(way.drift_inconsistency_of({0.9, 0, 0}, 7, 2), 0);
+  EXPECT_GT(way.drift_inconsistency_of({1.1, 0, 0}, 7, 2), DeadReckoning::kMaxDriftInconsistency);
 }
 
 TEST(DeadReckoning, AFewCommonLandmarksMakeALooseLink) {

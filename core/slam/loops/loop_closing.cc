@@ -43,11 +43,11 @@ LoopReport LoopCloser::consider(std::uint32_t keyframe, const PlaceIndex& places
   report.place = match->place;
   report.T_place_keyframe = match->T_place_keyframe;
   report.num_inliers = match->registration.num_inliers;
-  const double strain = match->strain;
+  const double drift_inconsistency = match->drift_inconsistency;
   std::erase_if(pending_, [&](const LoopMatch& p) { return keyframe > p.keyframe + kMaxPendingGap || !agrees(p, *match); });
   pending_.push_back(std::move(*match));
   if (pending_.size() > kMaxPending) pending_.erase(pending_.begin());
-  if (!is_confirmed(strain)) return report;
+  if (!is_confirmed(drift_inconsistency)) return report;
 
   const std::vector<LoopMatch> matches = std::move(pending_);
   pending_.clear();
@@ -65,12 +65,12 @@ LoopReport LoopCloser::consider(std::uint32_t keyframe, const PlaceIndex& places
 }
 
 // Do the opinions gathered so far suffice?
-bool LoopCloser::is_confirmed(double strain) const {
+bool LoopCloser::is_confirmed(double drift_inconsistency) const {
   const LoopMatch& first = pending_.front();
   const LoopMatch& last = pending_.back();
   const auto count = static_cast<int>(pending_.size());
   if (map_->keyframe(last.place).segment == map_->keyframe(last.keyframe).segment)
-    return count >= (strain > 1 ? numbers_.loop_confirmations : 1);
+    return count >= (drift_inconsistency > 1 ? numbers_.loop_confirmations : 1);
   if (reckoning_.begin_between(last.place, last.keyframe) != nullptr) return count >= kConfirmationsWithinReach;
   const double walked =
       (map_->keyframe(first.keyframe).view.T_map_camera.translation - map_->keyframe(last.keyframe).view.T_map_camera.translation).norm();

@@ -42,7 +42,7 @@ class LoopCloser {
   LoopReport consider(std::uint32_t keyframe, const PlaceIndex& places);
 
  private:
-  [[nodiscard]] bool is_confirmed(double strain) const;
+  [[nodiscard]] bool is_confirmed(double drift_inconsistency) const;
   [[nodiscard]] bool agrees(const LoopMatch& a, const LoopMatch& b) const;
   [[nodiscard]] PoseGraph segment_graph(std::uint32_t segment) const;
   [[nodiscard]] bool spread_error(const std::vector<LoopMatch>& matches);

@@ -35,7 +35,7 @@ std::optional<LoopMatch> LoopDetector::find(std::uint32_t keyframe, const PlaceI
   LoopMatch match;
   match.keyframe = keyframe;
   match.place = best->place;
-  match.strain = best->strain;
+  match.drift_inconsistency = best->drift_inconsistency;
   match.T_place_keyframe = T_map_place.inverse() * best->found.T_map_camera;
   match.covariance = rotate_covariance(T_map_place.rotation.conjugate(), best->found.covariance) + diagonal_covariance(0.005, 0.002);
   match.T_correction = best->found.T_map_camera * query.view.T_map_camera.inverse();
@@ -76,11 +76,12 @@ void LoopDetector::try_place(std::uint32_t keyframe, std::uint32_t place, bool i
   const auto keyframes = map_->surroundings(place, kMinSurroundingShared, kKeyframesPerPlace);
   map_->collect_landmarks(keyframes, kMaxPlaceLandmarks, &place_landmarks_);
   const SlamKeyframe& query = map_->keyframe(keyframe);
-  Registration found = is_nearby ? register_near(query.view, query.view.T_map_camera, kNearbyRadiusPx, query.frame, &place_landmarks_, solver_)
-                                 : register_anywhere(query.view, query.frame, &place_landmarks_, solver_);
+  Registration found = is_nearby
+                           ? register_near(query.view, query.view.T_map_camera, kNearbyRadiusPx, query.frame, &place_landmarks_, solver_)
+                           : register_anywhere(query.view, query.frame, &place_landmarks_, solver_);
   if (!found.is_found) return;
-  const double strain = reckoning_->strain(keyframe, place, found.T_map_camera);
-  if (strain <= DeadReckoning::kMaxStrain) candidates->push_back({place, strain, std::move(found)});
+  const double drift_inconsistency = reckoning_->drift_inconsistency(keyframe, place, found.T_map_camera);
+  if (drift_inconsistency <= DeadReckoning::kMaxDriftInconsistency) candidates->push_back({place, drift_inconsistency, std::move(found)});
 }
 
 bool LoopDetector::has_rival(const Candidate& best, const std::vector<Candidate>& candidates) const {

@@ -29,7 +29,7 @@ struct LoopMatch {
   std::uint32_t keyframe = 0, place = 0;
   Rigid3 T_place_keyframe;
   Matrix6d covariance = Matrix6d::Identity();  ///< of pose_error(), axes of `place`
-  double strain = 0;                           ///< of the correction, see DeadReckoning
+  double drift_inconsistency = 0;              ///< of the correction, see DeadReckoning
   Rigid3 T_correction;                         ///< moves the map of now onto the map of then
   Registration registration;
 };
@@ -45,7 +45,7 @@ class LoopDetector {
  private:
   struct Candidate {
     std::uint32_t place;
-    double strain;
+    double drift_inconsistency;
     Registration found;
   };
   [[nodiscard]] std::vector<std::uint8_t> linked_keyframes(std::uint32_t keyframe) const;
