@@ -102,7 +102,7 @@ void CandidateMatcher::find_best_candidates(const Features& features, const Cand
       const auto best = static_cast<std::uint32_t>(top[q].best), second = static_cast<std::uint32_t>(top[q].second);
       const std::int32_t landmark = candidates.landmarks[best];
       auto rival = static_cast<std::uint16_t>(top[q].second >> 32);
-      // Without the ratio test nobody needs the rival enough to pay for a second look at all candidates.
+      // Without the ratio test nobody needs the rival enough to pay for a guided refinement at all candidates.
       if (rival < kNoDistance && candidates.landmarks[second] == landmark)
         rival = has_ratio_test ? rival_distance(features.descriptors[begin + q], candidates, landmark) : kNoDistance;
       if (has_ratio_test && distance > options_.max_ratio * rival) continue;

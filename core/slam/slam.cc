@@ -55,7 +55,7 @@ ViewReport Slam::place_view(std::uint64_t frame, const ViewFeatures& view, const
   }
   const bool was_lost = num_lost_in_a_row_ > 0;
   Registration found = tracker_.track(view, frame);
-  if (!found.is_found && (was_lost || bridge_.is_open())) found = tracker_.find_back(view, places_, frame);
+  if (!found.is_found && (was_lost || bridge_.is_open())) found = tracker_.relocalize(view, places_, frame);
   if (!found.is_found && !was_lost && go_on_by_depth(frame, view, thumbnail, &report)) return report;
   if (!found.is_found) {
     bridge_.forget();

@@ -102,7 +102,7 @@ std::uint32_t Tracker::best_reference(const Registration& tracked) const {
   return best;
 }
 
-Registration Tracker::find_back(const ViewFeatures& view, const PlaceIndex& places, std::uint64_t seed) {
+Registration Tracker::relocalize(const ViewFeatures& view, const PlaceIndex& places, std::uint64_t seed) {
   const std::uint32_t segment = map_->keyframe(reference_).segment;
   Registration best;
   std::uint32_t best_keyframe = 0;

@@ -27,7 +27,7 @@ class Tracker {
   /// Pose of the view near the last one, or not found. Adapts the reference keyframe.
   [[nodiscard]] Registration track(const ViewFeatures& view, std::uint64_t seed);
   /// Pose of the view anywhere in the segment that was tracked last, by what places look like.
-  [[nodiscard]] Registration find_back(const ViewFeatures& view, const PlaceIndex& places, std::uint64_t seed);
+  [[nodiscard]] Registration relocalize(const ViewFeatures& view, const PlaceIndex& places, std::uint64_t seed);
   [[nodiscard]] bool wants_keyframe(const ViewFeatures& view, const Registration& tracked) const;
 
   /// The view was accepted with this pose; velocity follows.

@@ -112,11 +112,11 @@ TEST(Tracker, AnImpossibleSpeedIsRefused) {
 TEST(Tracker, NothingIsFoundInEmptyAndStrangeViews) {
   Fixture f;
   EXPECT_FALSE(f.tracker.track(f.viewer.blank(101), 1).is_found);
-  EXPECT_FALSE(f.tracker.find_back(f.viewer.blank(101), f.places, 1).is_found);
+  EXPECT_FALSE(f.tracker.relocalize(f.viewer.blank(101), f.places, 1).is_found);
   const testing::World other = testing::make_room(60, 90);
   testing::Viewer elsewhere(other);
   EXPECT_FALSE(f.tracker.track(elsewhere.see(101, Fixture::pose(0)), 1).is_found);
-  EXPECT_FALSE(f.tracker.find_back(elsewhere.see(101, Fixture::pose(0)), f.places, 1).is_found);
+  EXPECT_FALSE(f.tracker.relocalize(elsewhere.see(101, Fixture::pose(0)), f.places, 1).is_found);
   EXPECT_EQ(f.tracker.reference(), 0U);
 }
 
@@ -124,7 +124,7 @@ TEST(Tracker, FindsBackAtAnyPlaceOfItsSegment) {
   Fixture f;
   const Rigid3 truth = Fixture::pose(1.55);
   const ViewFeatures view = f.viewer.see(130, truth);
-  const Registration found = f.tracker.find_back(view, f.places, 1);
+  const Registration found = f.tracker.relocalize(view, f.places, 1);
   ASSERT_TRUE(found.is_found);
   EXPECT_LT(error_m(found, truth), 0.02);
   EXPECT_NEAR(f.tracker.reference(), 8, 1);
@@ -132,7 +132,7 @@ TEST(Tracker, FindsBackAtAnyPlaceOfItsSegment) {
 
 TEST(Tracker, DoesNotFindBackInAnotherSegment) {
   Fixture f(4);
-  EXPECT_FALSE(f.tracker.find_back(f.viewer.see(130, Fixture::pose(1.8)), f.places, 1).is_found);
+  EXPECT_FALSE(f.tracker.relocalize(f.viewer.see(130, Fixture::pose(1.8)), f.places, 1).is_found);
 }
 
 TEST(Tracker, WantsAKeyframeWhenTheViewIsNew) {
