@@ -59,7 +59,8 @@ void add_view_command(CLI::App& app, int& exit_code) {
   command->footer(kFooter);
   command->add_option("MAP", arguments->map_path, "Map file (.cmap)")->required();
   command->add_option("--png", arguments->png_path, "Picture to write")->required();
-  command->add_option("--trajectory", arguments->trajectory_path, "Walk to draw into it: TUM trajectory in coordinates of the map");
+  command->add_option("--trajectory", arguments->trajectory_path,
+                      "TrackedRecording to draw into it: TUM trajectory in coordinates of the map");
   command->add_option("--width", arguments->width_px, "Width of the picture in pixels (default 1600)")->check(CLI::Range(400, 8000));
   const std::map<std::string, MapPanel> panels{
       {"top", MapPanel::kTop}, {"perspective", MapPanel::kPerspective}, {"coverage", MapPanel::kCoverage}, {"all", MapPanel::kAll}};

@@ -14,8 +14,8 @@
 #include "tests/base/recording_observer.h"
 #include "tests/drivers/test_folder.h"
 #include "tests/mapping/recorded_room.h"
+#include "tools/mapping/build/recording_tracking.h"
 #include "tools/mapping/build/view_log.h"
-#include "tools/mapping/build/walk_tracking.h"
 
 namespace camloc::mapping {
 namespace {
@@ -78,7 +78,7 @@ TEST(MapPipeline, AWalkBecomesAMapAndATrajectory) {
 std::vector<std::uint8_t> whole_log(const TestFolder& folder, const BuildRequest& request) {
   const auto frames = find_frames(request.frames);
   EXPECT_TRUE(frames.is_ok());
-  WalkRequest walk;
+  TrackingRequest walk;
   walk.url = frames->url;
   walk.num_frames = frames->num_selected;
   walk.camera = request.camera;
@@ -86,8 +86,8 @@ std::vector<std::uint8_t> whole_log(const TestFolder& folder, const BuildRequest
   walk.slam = request.slam;
   walk.log_path = folder / "whole.views";
   Slam slam(walk.camera, walk.slam);
-  WalkCheck check(walk.camera);
-  const auto end = track_walk(walk, &slam, &check, WorkObserver::nobody());
+  RecordingCheck check(walk.camera);
+  const auto end = track_recording(walk, &slam, &check, WorkObserver::nobody());
   EXPECT_TRUE(end.is_ok()) << end.status().message();
   return bytes_of(walk.log_path);
 }

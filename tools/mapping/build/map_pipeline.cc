@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Two ways to a map. With poses (build_from_poses): every posed frame goes into the map builder. Without (build_from_walk): SLAM
+// Two ways to a map. With poses (build_from_poses): every posed frame goes into the map builder. Without (build_from_recording): SLAM
 // finds the poses in a first pass that logs what it sees, the walk is placed in the site or turned upright, and a second pass over
 // the log feeds the builder. Both end in finish_map, which writes, or merges into the map that is extended.
 #include "tools/mapping/build/map_pipeline.h"
@@ -17,8 +17,8 @@
 #include "tools/common/frame_reading.h"
 #include "tools/common/trajectory_file.h"
 #include "tools/mapping/build/merge_pipeline.h"
+#include "tools/mapping/build/recording_tracking.h"
 #include "tools/mapping/build/view_log.h"
-#include "tools/mapping/build/walk_tracking.h"
 
 namespace camloc::mapping {
 namespace {
@@ -114,17 +114,17 @@ Status build_from_poses(const BuildRequest& request, WorkObserver& observer, Bui
 // --- SLAM finds the poses --------------------------------------------------------------------------------------------
 
 /// A walk on its way to a map.
-struct Walk {
+struct TrackedRecording {
   SelectedFrames frames;
-  WalkRequest pass;
+  TrackingRequest pass;
   std::optional<Survey> survey;
-  WalkEnd end;
+  RecordingEnd end;
   SlamResult result;              ///< where the camera was
   std::optional<WcsDatum> datum;  ///< where the largest segment lies in the site
 };
 
-Result<Walk> prepare_walk(const BuildRequest& request) {
-  Walk walk;
+Result<TrackedRecording> prepare_recording(const BuildRequest& request) {
+  TrackedRecording walk;
   const auto frames = find_frames(request.frames);
   if (!frames.is_ok()) return frames.status();
   if (!frames->has_depth) return Status(ErrorCode::kInvalid, request.frames.sequence + ": has no depth images; a map needs depth");
@@ -143,9 +143,9 @@ Result<Walk> prepare_walk(const BuildRequest& request) {
 }
 
 /// The first pass, and everything that is known only after it: poses, refusals, weak spots.
-Status find_poses(const BuildRequest& request, Slam* slam, Walk* walk, WorkObserver& observer, BuildSummary* summary) {
-  WalkCheck check(request.camera);
-  auto end = track_walk(walk->pass, slam, &check, observer);
+Status find_poses(const BuildRequest& request, Slam* slam, TrackedRecording* walk, WorkObserver& observer, BuildSummary* summary) {
+  RecordingCheck check(request.camera);
+  auto end = track_recording(walk->pass, slam, &check, observer);
   if (!end.is_ok()) return end.status();
   walk->end = std::move(end).value();
   // A map that is extended is not touched by half a walk.
@@ -173,7 +173,7 @@ Status find_poses(const BuildRequest& request, Slam* slam, Walk* walk, WorkObser
 }
 
 /// Site coordinates from control points; else z up, where something says which way that is.
-Status place_walk(const BuildRequest& request, Slam* slam, Walk* walk, BuildSummary* summary) {
+Status place_recording(const BuildRequest& request, Slam* slam, TrackedRecording* walk, BuildSummary* summary) {
   if (walk->survey) {
     summary->survey = GeorefSummary{};
     summary->survey->map_path = summary->survey->out_path = request.map_path;
@@ -202,12 +202,13 @@ void measure_deformation(const Slam& slam, WorkObserver& observer, SlamResult* r
 }
 
 /// The second pass: what was seen, from where it was seen, becomes a map.
-Status map_segment(const BuildRequest& request, const Walk& walk, std::size_t number, WorkObserver& observer, BuildSummary* summary) {
+Status map_segment(const BuildRequest& request, const TrackedRecording& walk, std::size_t number, WorkObserver& observer,
+                   BuildSummary* summary) {
   std::unordered_map<std::uint64_t, const SlamPose*> pose_of_frame;
   for (const SlamPose& pose : walk.result.poses) {
     if (pose.segment == walk.result.segments[number].id) pose_of_frame.emplace(pose.frame, &pose);
   }
-  auto log = ViewLogReader::open(walk.pass.log_path, walk_identity(walk.pass));
+  auto log = ViewLogReader::open(walk.pass.log_path, recording_identity(walk.pass));
   if (!log.is_ok()) return log.status();
   MapBuilder builder(request.camera, recording_options(request));
   LoggedView logged;
@@ -229,7 +230,7 @@ Status map_segment(const BuildRequest& request, const Walk& walk, std::size_t nu
 }
 
 /// One map a segment, the largest at the path the user asked for. Returns an error only for that one.
-Status write_segments(const BuildRequest& request, const Walk& walk, WorkObserver& observer, BuildSummary* summary) {
+Status write_segments(const BuildRequest& request, const TrackedRecording& walk, WorkObserver& observer, BuildSummary* summary) {
   for (std::size_t number = walk.result.segments.size(); number-- > 0;) {
     const SlamResult::Segment& segment = walk.result.segments[number];
     if (number == 0) return map_segment(request, walk, number, observer, summary);
@@ -254,16 +255,16 @@ Status write_trajectory(const BuildRequest& request, const SlamResult& result, s
   return replace_file(request.trajectory_path, format_trajectory(trajectory));
 }
 
-Status build_from_walk(const BuildRequest& request, WorkObserver& observer, BuildSummary* summary) {
-  auto prepared = prepare_walk(request);
+Status build_from_recording(const BuildRequest& request, WorkObserver& observer, BuildSummary* summary) {
+  auto prepared = prepare_recording(request);
   if (!prepared.is_ok()) return prepared.status();
-  Walk walk = std::move(prepared).value();
+  TrackedRecording walk = std::move(prepared).value();
   summary->num_recorded = walk.frames.num_recorded;
   summary->num_selected = walk.frames.num_selected;
   {
     Slam slam(request.camera, walk.pass.slam);  // gone before the map takes its place in memory
     if (const Status found = find_poses(request, &slam, &walk, observer, summary); !found.is_ok()) return found;
-    if (const Status placed = place_walk(request, &slam, &walk, summary); !placed.is_ok()) return placed;
+    if (const Status placed = place_recording(request, &slam, &walk, summary); !placed.is_ok()) return placed;
     measure_deformation(slam, observer, &walk.result);
   }
   if (const Status written = write_segments(request, walk, observer, summary); !written.is_ok()) return written;
@@ -282,7 +283,7 @@ Status build_map(const BuildRequest& request, WorkObserver& observer, BuildSumma
   summary->sequence = request.frames.sequence;
   summary->camera = request.camera.name;
   const Status built =
-      request.frames.poses.empty() ? build_from_walk(request, observer, summary) : build_from_poses(request, observer, summary);
+      request.frames.poses.empty() ? build_from_recording(request, observer, summary) : build_from_poses(request, observer, summary);
   summary->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return built;
 }

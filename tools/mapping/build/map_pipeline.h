@@ -13,7 +13,7 @@
 #include "core/slam/slam.h"
 #include "tools/mapping/build/build_report.h"
 #include "tools/mapping/build/posed_frames.h"
-#include "tools/mapping/build/walk_site.h"
+#include "tools/mapping/build/recording_site.h"
 
 namespace camloc::mapping {
 

@@ -14,11 +14,11 @@
 #include "core/geometry/camera.h"
 #include "core/slam/slam.h"
 #include "tools/common/frame_reading.h"
-#include "tools/mapping/build/walk_check.h"
+#include "tools/mapping/build/recording_check.h"
 
 namespace camloc::mapping {
 
-struct WalkRequest {
+struct TrackingRequest {
   std::string url;               ///< for open_frame_source
   std::uint64_t num_frames = 0;  ///< that it will deliver, 0 = unknown
   RgbdCamera camera;
@@ -35,7 +35,7 @@ struct KeyframeSurface {
 };
 
 /// How the pass ended.
-struct WalkEnd {
+struct RecordingEnd {
   std::vector<KeyframeSurface> surfaces;
   bool is_interrupted = false;          ///< what is there is a map of the first part
   std::uint64_t num_resumed = 0;        ///< views that came from the log
@@ -44,10 +44,11 @@ struct WalkEnd {
 };
 
 /// What makes a log belong to a build.
-[[nodiscard]] std::uint64_t walk_identity(const WalkRequest& request);
+[[nodiscard]] std::uint64_t recording_identity(const TrackingRequest& request);
 
 /// Feeds all frames to `slam`; `check` gathers what is wrong with them. Errors: those of the source and of the log, a frame of
 /// the wrong size.
-[[nodiscard]] Result<WalkEnd> track_walk(const WalkRequest& request, Slam* slam, WalkCheck* check, WorkObserver& observer);
+[[nodiscard]] Result<RecordingEnd> track_recording(const TrackingRequest& request, Slam* slam, RecordingCheck* check,
+                                                   WorkObserver& observer);
 
 }  // namespace camloc::mapping

@@ -3,7 +3,7 @@
 //
 // A walk floats until something holds it. Control points are resolved to points of the map, fitted, and given to the bundle
 // adjustment as surveyed landmarks; a second fit, on the adjusted map and with the strict tolerance, gives the datum.
-#include "tools/mapping/build/walk_site.h"
+#include "tools/mapping/build/recording_site.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Recordings that no map can be made of, and weak spots of others.
-#include "tools/mapping/build/walk_check.h"
+#include "tools/mapping/build/recording_check.h"
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ ViewReport tracked(int num_inliers = 200) {
 }
 
 /// Frames whose depth is a plane at a slant, or everywhere the same.
-void see(WalkCheck* check, std::uint64_t frame, std::uint16_t constant, std::size_t num_with_depth) {
+void see(RecordingCheck* check, std::uint64_t frame, std::uint16_t constant, std::size_t num_with_depth) {
   FrameBuffer buffer;
   buffer.sequence = frame;
   buffer.stamp_ns = stamp_ns(frame);
@@ -52,8 +52,8 @@ SlamResult moving(double metres, double radians = 0, std::uint32_t segment_of_la
   return result;
 }
 
-TEST(WalkCheck, AGoodWalkHasNothingToSay) {
-  WalkCheck check(test_camera());
+TEST(RecordingCheck, AGoodWalkHasNothingToSay) {
+  RecordingCheck check(test_camera());
   for (std::uint64_t i = 0; i < 50; ++i) {
     see(&check, i, 0, 300);
     EXPECT_TRUE(check.early_verdict().is_ok());
@@ -63,8 +63,8 @@ TEST(WalkCheck, AGoodWalkHasNothingToSay) {
   EXPECT_EQ(check.num_stamp_jumps(), 0U);
 }
 
-TEST(WalkCheck, ConstantDepthIsGivenUpEarlyWithItsValue) {
-  WalkCheck check(test_camera());
+TEST(RecordingCheck, ConstantDepthIsGivenUpEarlyWithItsValue) {
+  RecordingCheck check(test_camera());
   std::uint64_t given_up = 0;
   for (std::uint64_t i = 0; i < 50 && given_up == 0; ++i) {
     see(&check, i, 1234, 300);
@@ -77,16 +77,16 @@ TEST(WalkCheck, ConstantDepthIsGivenUpEarlyWithItsValue) {
   EXPECT_NE(verdict.message().find("1234"), std::string::npos) << verdict.message();
 }
 
-TEST(WalkCheck, ACoveredDepthCameraIsNoDepth) {
-  WalkCheck check(test_camera());
+TEST(RecordingCheck, ACoveredDepthCameraIsNoDepth) {
+  RecordingCheck check(test_camera());
   for (std::uint64_t i = 0; i < 40; ++i) see(&check, i, 65535, 0);
   const Status verdict = check.early_verdict();
   EXPECT_EQ(verdict.code(), ErrorCode::kInvalid);
   EXPECT_NE(verdict.message().find("no feature has depth in 40 of 40"), std::string::npos) << verdict.message();
 }
 
-TEST(WalkCheck, FramesWithoutFeaturesSayNothingAboutDepth) {
-  WalkCheck check(test_camera());
+TEST(RecordingCheck, FramesWithoutFeaturesSayNothingAboutDepth) {
+  RecordingCheck check(test_camera());
   for (std::uint64_t i = 0; i < 40; ++i) {
     check.see_view(i, stamp_ns(i), 0, 0);
     check.see_report(ViewReport{});
@@ -96,15 +96,15 @@ TEST(WalkCheck, FramesWithoutFeaturesSayNothingAboutDepth) {
   EXPECT_EQ(check.weak_spots()[0].what, "little texture");
 }
 
-TEST(WalkCheck, AFewFramesWithoutDepthAreForgiven) {
-  WalkCheck check(test_camera());
+TEST(RecordingCheck, AFewFramesWithoutDepthAreForgiven) {
+  RecordingCheck check(test_camera());
   for (std::uint64_t i = 0; i < 40; ++i) see(&check, i, i < 20 ? 65535 : 0, i < 20 ? 0 : 300);
   EXPECT_TRUE(check.early_verdict().is_ok());
   EXPECT_TRUE(check.verdict(moving(1)).is_ok());
 }
 
-TEST(WalkCheck, ACameraThatStandsStillIsRefused) {
-  WalkCheck check(test_camera());
+TEST(RecordingCheck, ACameraThatStandsStillIsRefused) {
+  RecordingCheck check(test_camera());
   for (std::uint64_t i = 0; i < 11; ++i) see(&check, i, 0, 300);
   const Status verdict = check.verdict(moving(0.02, 0.02));
   EXPECT_EQ(verdict.code(), ErrorCode::kInvalid);
@@ -114,14 +114,14 @@ TEST(WalkCheck, ACameraThatStandsStillIsRefused) {
   EXPECT_TRUE(check.verdict(moving(0, 0.2)).is_ok());  // only turned
 }
 
-TEST(WalkCheck, LostAndThenSomewhereElseIsNotStandingStill) {
-  WalkCheck check(test_camera());
+TEST(RecordingCheck, LostAndThenSomewhereElseIsNotStandingStill) {
+  RecordingCheck check(test_camera());
   for (std::uint64_t i = 0; i < 11; ++i) see(&check, i, 0, 300);
   EXPECT_TRUE(check.verdict(moving(0.0, 0.0, 1)).is_ok());
 }
 
-TEST(WalkCheck, JumpsOfTheStampsAreCounted) {
-  WalkCheck check(test_camera());
+TEST(RecordingCheck, JumpsOfTheStampsAreCounted) {
+  RecordingCheck check(test_camera());
   for (std::uint64_t i = 0; i < 20; ++i) {
     check.see_view(i, stamp_ns(i + (i >= 8 ? 30 : 0) + (i >= 15 ? 30 : 0)), 400, 300);
     check.see_report(tracked());
@@ -135,8 +135,8 @@ TEST(WalkCheck, JumpsOfTheStampsAreCounted) {
   EXPECT_NE(spots[0].advice.find("without gaps"), std::string::npos);
 }
 
-TEST(WalkCheck, WeakSpotsAreStretchesWithAdvice) {
-  WalkCheck check(test_camera());
+TEST(RecordingCheck, WeakSpotsAreStretchesWithAdvice) {
+  RecordingCheck check(test_camera());
   ViewReport lost;
   for (std::uint64_t i = 0; i < 120; ++i) {
     const bool is_bare = i >= 20 && i < 30, is_dark = i >= 40 && i < 50, is_lost = i >= 60 && i < 72, is_thin = i >= 90 && i < 95;
@@ -156,8 +156,8 @@ TEST(WalkCheck, WeakSpotsAreStretchesWithAdvice) {
   }
 }
 
-TEST(WalkCheck, TheBeginOfASegmentIsNotWeak) {
-  WalkCheck check(test_camera());
+TEST(RecordingCheck, TheBeginOfASegmentIsNotWeak) {
+  RecordingCheck check(test_camera());
   ViewReport begun;
   begun.state = ViewState::kTracked;
   begun.has_begun_segment = true;
@@ -166,8 +166,8 @@ TEST(WalkCheck, TheBeginOfASegmentIsNotWeak) {
   EXPECT_TRUE(check.weak_spots().empty());
 }
 
-TEST(WalkCheck, NothingSeenIsNoVerdict) {
-  const WalkCheck check(test_camera());
+TEST(RecordingCheck, NothingSeenIsNoVerdict) {
+  const RecordingCheck check(test_camera());
   EXPECT_TRUE(check.verdict({}).is_ok());
   EXPECT_TRUE(check.early_verdict().is_ok());
 }

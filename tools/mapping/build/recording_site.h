@@ -12,7 +12,7 @@
 #include "core/geometry/gravity.h"
 #include "core/geometry/wcs.h"
 #include "core/slam/slam.h"
-#include "tools/mapping/build/walk_tracking.h"
+#include "tools/mapping/build/recording_tracking.h"
 #include "tools/mapping/site/control_points.h"
 #include "tools/mapping/site/georef_report.h"
 

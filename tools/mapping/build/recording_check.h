@@ -23,9 +23,9 @@ struct WeakSpot {
   std::string advice;                             ///< what to do about it
 };
 
-class WalkCheck {
+class RecordingCheck {
  public:
-  explicit WalkCheck(const RgbdCamera& camera) : camera_(camera) {}
+  explicit RecordingCheck(const RgbdCamera& camera) : camera_(camera) {}
 
   /// Before tracking: depth missing, constant, in the wrong unit. `num_with_depth` features of `num_features` have depth.
   void see_frame(const Frame& frame, std::size_t num_features, std::size_t num_with_depth);

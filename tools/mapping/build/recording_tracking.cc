@@ -3,7 +3,7 @@
 //
 // The first pass, frame by frame: features and thumbnail, SLAM, log. A resumed pass replays its log through the same SLAM first,
 // so that its state is that of a pass which was never interrupted.
-#include "tools/mapping/build/walk_tracking.h"
+#include "tools/mapping/build/recording_tracking.h"
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -30,7 +30,7 @@ std::string note_of(const SlamCounts& counts) {
 /// One walk on its way through extraction, tracking and the log.
 class Pass {
  public:
-  Pass(const WalkRequest& request, Slam* slam, WalkCheck* check, WorkObserver& observer)
+  Pass(const TrackingRequest& request, Slam* slam, RecordingCheck* check, WorkObserver& observer)
       : request_(request),
         slam_(slam),
         check_(check),
@@ -40,7 +40,7 @@ class Pass {
 
   /// Processes what an earlier pass has seen; says where its log ends.
   Status replay(std::uint64_t* log_bytes) {
-    auto reader = ViewLogReader::open(request_.log_path, walk_identity(request_));
+    auto reader = ViewLogReader::open(request_.log_path, recording_identity(request_));
     if (!reader.is_ok()) return reader.status();
     LoggedView logged;
     while (!observer_.should_stop() && reader->next(&logged).is_ok()) {
@@ -71,7 +71,7 @@ class Pass {
   }
 
   [[nodiscard]] bool is_interrupted() const { return end_.is_interrupted; }
-  [[nodiscard]] WalkEnd end() { return std::move(end_); }
+  [[nodiscard]] RecordingEnd end() { return std::move(end_); }
 
  private:
   static std::size_t num_with_depth(const ViewFeatures& view) {
@@ -102,24 +102,24 @@ class Pass {
     return report.is_keyframe;
   }
 
-  const WalkRequest& request_;
+  const TrackingRequest& request_;
   Slam* slam_;
-  WalkCheck* check_;
+  RecordingCheck* check_;
   WorkObserver& observer_;
   ViewExtractor extractor_;
   ThumbnailMaker thumbnails_;
-  WalkEnd end_;
+  RecordingEnd end_;
   std::uint64_t num_done_ = 0, last_frame_ = 0;
 };
 
 }  // namespace
 
-std::uint64_t walk_identity(const WalkRequest& request) {
+std::uint64_t recording_identity(const TrackingRequest& request) {
   const std::string text = request.url + "\n" + format_camera_toml(request.camera) + "\n" + std::to_string(request.orb.num_features);
   return XXH3_64bits(text.data(), text.size());
 }
 
-Result<WalkEnd> track_walk(const WalkRequest& request, Slam* slam, WalkCheck* check, WorkObserver& observer) {
+Result<RecordingEnd> track_recording(const TrackingRequest& request, Slam* slam, RecordingCheck* check, WorkObserver& observer) {
   Pass pass(request, slam, check, observer);
   std::uint64_t log_bytes = 0;
   if (request.is_resumed) {
@@ -127,7 +127,7 @@ Result<WalkEnd> track_walk(const WalkRequest& request, Slam* slam, WalkCheck* ch
     if (pass.is_interrupted()) return pass.end();  // the rest of the log is for the next time
   }
   auto log = request.is_resumed ? ViewLogWriter::append(request.log_path, log_bytes)
-                                : ViewLogWriter::create(request.log_path, walk_identity(request));
+                                : ViewLogWriter::create(request.log_path, recording_identity(request));
   if (!log.is_ok()) return log.status();
   if (const Status done = pass.run(std::move(log).value()); !done.is_ok()) {
     // What is wrong with the recording stays wrong; a full disk does not.

@@ -3,7 +3,7 @@
 //
 // A recording is judged twice: early, by its depth images alone, so that nobody waits an hour for a refusal; and at the end, by how
 // far the camera moved. In between every frame leaves a note, and stretches of weak notes become spots with advice.
-#include "tools/mapping/build/walk_check.h"
+#include "tools/mapping/build/recording_check.h"
 
 #include <algorithm>
 #include <cstring>
@@ -45,7 +45,7 @@ const char* advice_for(const char* what) {
 
 }  // namespace
 
-void WalkCheck::see_frame(const Frame& frame, std::size_t num_features, std::size_t num_with_depth) {
+void RecordingCheck::see_frame(const Frame& frame, std::size_t num_features, std::size_t num_with_depth) {
   std::uint16_t value = 0;
   if (is_constant(frame.depth, &value)) {
     ++num_constant_;
@@ -54,7 +54,7 @@ void WalkCheck::see_frame(const Frame& frame, std::size_t num_features, std::siz
   see_view(frame.sequence, frame.stamp_ns, num_features, num_with_depth);
 }
 
-void WalkCheck::see_view(std::uint64_t frame, std::int64_t stamp_ns, std::size_t num_features, std::size_t num_with_depth) {
+void RecordingCheck::see_view(std::uint64_t frame, std::int64_t stamp_ns, std::size_t num_features, std::size_t num_with_depth) {
   Note& note = notes_.emplace_back();
   note.frame = frame;
   note.num_features = num_features;
@@ -66,17 +66,17 @@ void WalkCheck::see_view(std::uint64_t frame, std::int64_t stamp_ns, std::size_t
   ++num_seen_;
 }
 
-void WalkCheck::see_report(const ViewReport& report) {
+void RecordingCheck::see_report(const ViewReport& report) {
   notes_.back().is_lost = report.state == ViewState::kLost;
   notes_.back().num_inliers = report.has_begun_segment ? 1000 : report.num_inliers;
 }
 
-Status WalkCheck::early_verdict() const {
+Status RecordingCheck::early_verdict() const {
   if (num_seen_ < kEarlyFrames || num_seen_ > 2 * kEarlyFrames) return Status::ok();
   return verdict({});
 }
 
-Status WalkCheck::verdict(const SlamResult& result) const {
+Status RecordingCheck::verdict(const SlamResult& result) const {
   if (num_seen_ > 0 && num_constant_ * 10 >= num_seen_ * 9) {
     return {ErrorCode::kInvalid, "depth is the same everywhere (" + std::to_string(constant_value_) + " units) in " +
                                      std::to_string(num_constant_) + " of " + std::to_string(num_seen_) +
@@ -100,7 +100,7 @@ Status WalkCheck::verdict(const SlamResult& result) const {
                          100 * moved_m, tools::degrees(turned_rad), result.poses.size())};
 }
 
-const char* WalkCheck::weakness_of(const Note& note) const {
+const char* RecordingCheck::weakness_of(const Note& note) const {
   if (note.is_jump) return "time jump";
   if (note.num_features < kMinFeatures) return "little texture";
   if (note.num_with_depth < kMinWithDepth) return "little depth";
@@ -109,7 +109,7 @@ const char* WalkCheck::weakness_of(const Note& note) const {
   return nullptr;
 }
 
-std::vector<WeakSpot> WalkCheck::weak_spots() const {
+std::vector<WeakSpot> RecordingCheck::weak_spots() const {
   std::vector<WeakSpot> spots;
   std::uint64_t last = 0;  // position in notes_ of the last weak frame
   for (std::uint64_t i = 0; i < notes_.size(); ++i) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The first pass over a recording: its log, what it counts, and being interrupted.
-#include "tools/mapping/build/walk_tracking.h"
+#include "tools/mapping/build/recording_tracking.h"
 
 #include <gtest/gtest.h>
 
@@ -14,8 +14,8 @@
 namespace camloc::mapping {
 namespace {
 
-WalkRequest request_for(const TestFolder& folder) {
-  WalkRequest request;
+TrackingRequest request_for(const TestFolder& folder) {
+  TrackingRequest request;
   request.url = "replay://" + (folder / "walk");
   request.camera = room_camera();
   request.slam = room_options();
@@ -23,18 +23,18 @@ WalkRequest request_for(const TestFolder& folder) {
   return request;
 }
 
-Result<WalkEnd> track(const WalkRequest& request, SlamCounts* counts = nullptr, WorkObserver& observer = WorkObserver::nobody()) {
+Result<RecordingEnd> track(const TrackingRequest& request, SlamCounts* counts = nullptr, WorkObserver& observer = WorkObserver::nobody()) {
   Slam slam(request.camera, request.slam);
-  WalkCheck check(request.camera);
-  auto end = track_walk(request, &slam, &check, observer);
+  RecordingCheck check(request.camera);
+  auto end = track_recording(request, &slam, &check, observer);
   if (counts != nullptr) *counts = slam.counts();
   return end;
 }
 
-TEST(WalkTracking, EveryViewIsTrackedAndLogged) {
+TEST(RecordingTracking, EveryViewIsTrackedAndLogged) {
   const TestFolder folder;
   record_room(folder / "walk", 12);
-  const WalkRequest request = request_for(folder);
+  const TrackingRequest request = request_for(folder);
   SlamCounts counts;
   testing::RecordingObserver observer;
   const auto end = track(request, &counts, observer);
@@ -46,7 +46,7 @@ TEST(WalkTracking, EveryViewIsTrackedAndLogged) {
   EXPECT_EQ(counts.num_views, 12U);
   EXPECT_EQ(counts.num_lost, 0U);
   EXPECT_EQ(end->surfaces.size(), counts.num_keyframes);
-  auto reader = ViewLogReader::open(request.log_path, walk_identity(request));
+  auto reader = ViewLogReader::open(request.log_path, recording_identity(request));
   ASSERT_TRUE(reader.is_ok());
   LoggedView view;
   for (std::uint64_t frame = 0; frame < 12; ++frame) {
@@ -58,10 +58,10 @@ TEST(WalkTracking, EveryViewIsTrackedAndLogged) {
   EXPECT_EQ(reader->next(&view).code(), ErrorCode::kEnd);
 }
 
-TEST(WalkTracking, ResumingAWholeLogReadsNoFrameAgain) {
+TEST(RecordingTracking, ResumingAWholeLogReadsNoFrameAgain) {
   const TestFolder folder;
   record_room(folder / "walk", 12);
-  WalkRequest request = request_for(folder);
+  TrackingRequest request = request_for(folder);
   SlamCounts first, again;
   ASSERT_TRUE(track(request, &first).is_ok());
   const auto log = bytes_of(request.log_path);
@@ -75,10 +75,10 @@ TEST(WalkTracking, ResumingAWholeLogReadsNoFrameAgain) {
   EXPECT_EQ(bytes_of(request.log_path), log);
 }
 
-TEST(WalkTracking, AnInterruptWhileTheLogIsReadKeepsTheLog) {
+TEST(RecordingTracking, AnInterruptWhileTheLogIsReadKeepsTheLog) {
   const TestFolder folder;
   record_room(folder / "walk", 12);
-  WalkRequest request = request_for(folder);
+  TrackingRequest request = request_for(folder);
   ASSERT_TRUE(track(request).is_ok());
   const auto log = bytes_of(request.log_path);
   request.is_resumed = true;
@@ -89,7 +89,7 @@ TEST(WalkTracking, AnInterruptWhileTheLogIsReadKeepsTheLog) {
   EXPECT_EQ(bytes_of(request.log_path), log);
 }
 
-TEST(WalkTracking, FramesOfAnotherSizeEndItAndLeaveNoLog) {
+TEST(RecordingTracking, FramesOfAnotherSizeEndItAndLeaveNoLog) {
   const TestFolder folder;
   record_room(folder / "walk", 6, [](std::uint64_t, FrameBuffer* buffer) { buffer->gray.resize(160, 120); });
   const auto end = track(request_for(folder));
@@ -99,25 +99,25 @@ TEST(WalkTracking, FramesOfAnotherSizeEndItAndLeaveNoLog) {
   EXPECT_FALSE(std::filesystem::exists(folder / "log"));
 }
 
-TEST(WalkTracking, TheIdentityChangesWithRecordingCameraAndFeatures) {
+TEST(RecordingTracking, TheIdentityChangesWithRecordingCameraAndFeatures) {
   const TestFolder folder;
-  const WalkRequest request = request_for(folder);
-  const std::uint64_t identity = walk_identity(request);
-  EXPECT_EQ(walk_identity(request), identity);
-  WalkRequest other = request;
+  const TrackingRequest request = request_for(folder);
+  const std::uint64_t identity = recording_identity(request);
+  EXPECT_EQ(recording_identity(request), identity);
+  TrackingRequest other = request;
   other.url += "?frames=0:10:1";
-  EXPECT_NE(walk_identity(other), identity);
+  EXPECT_NE(recording_identity(other), identity);
   other = request;
   other.camera.depth.fx += 0.5;
   other.camera.color.fx += 0.5;
-  EXPECT_NE(walk_identity(other), identity);
+  EXPECT_NE(recording_identity(other), identity);
   other = request;
   other.orb.num_features += 1;
-  EXPECT_NE(walk_identity(other), identity);
+  EXPECT_NE(recording_identity(other), identity);
   // Where the log lies does not matter.
   other = request;
   other.log_path = "elsewhere";
-  EXPECT_EQ(walk_identity(other), identity);
+  EXPECT_EQ(recording_identity(other), identity);
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Which way is up in a walk, and what the survey of a build takes.
-#include "tools/mapping/build/walk_site.h"
+#include "tools/mapping/build/recording_site.h"
 
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ std::vector<KeyframeSurface> floor_seen(const SlamResult& result, const Eigen::V
   return surfaces;
 }
 
-TEST(WalkSite, UpIsAcrossTheFloorAndTurnsTheWalkUpright) {
+TEST(RecordingSite, UpIsAcrossTheFloorAndTurnsTheWalkUpright) {
   const Eigen::Vector3d up = Eigen::Vector3d(0.2, -0.1, 1).normalized();
   SlamResult result = walk(up);
   const TestFolder folder;
@@ -62,7 +62,7 @@ TEST(WalkSite, UpIsAcrossTheFloorAndTurnsTheWalkUpright) {
   EXPECT_EQ(result.poses[3].T_map_camera.translation, other.translation);
 }
 
-TEST(WalkSite, WithoutFloorAndAccelerometerUpIsNotKnown) {
+TEST(RecordingSite, WithoutFloorAndAccelerometerUpIsNotKnown) {
   const SlamResult result = walk(Eigen::Vector3d::UnitZ());
   const TestFolder folder;
   EXPECT_EQ(find_up(result, {}, folder.path(), "").status().code(), ErrorCode::kNotFound);
@@ -75,7 +75,7 @@ TEST(WalkSite, WithoutFloorAndAccelerometerUpIsNotKnown) {
   EXPECT_TRUE(find_up(result, floor_seen(result, Eigen::Vector3d::UnitZ()), folder.path(), "").is_ok());
 }
 
-TEST(WalkSite, ASurveyHasPixelsOfFramesOnly) {
+TEST(RecordingSite, ASurveyHasPixelsOfFramesOnly) {
   const TestFolder folder;
   record_room(folder / "walk", 6);
   SurveyRequest request;
