@@ -36,7 +36,7 @@ struct Surroundings {
 };
 
 // What varies slowly over an image is the lens's vignetting and the exposure, which go with the camera, more often than the wall.
-void remove_slow_changes(const ViewThumbnail& view, std::vector<float>* grey) {
+void remove_slow_changes(const Thumbnail& view, std::vector<float>* grey) {
   const auto at = [](const std::vector<double>& sums, std::size_t stride, int x, int y) {
     return sums[static_cast<std::size_t>(y) * stride + static_cast<std::size_t>(x)];
   };
@@ -56,14 +56,14 @@ void remove_slow_changes(const ViewThumbnail& view, std::vector<float>* grey) {
       const double sum =
           at(sums, stride, right, bottom) - at(sums, stride, left, bottom) - at(sums, stride, right, top) + at(sums, stride, left, top);
       const double mean = sum / ((2 * radius + 1) * (2 * radius + 1));
-      (*grey)[view.index(x, y)] = ViewThumbnail::kGreyUnit * static_cast<float>(view.grey[view.index(x, y)] - mean);
+      (*grey)[view.index(x, y)] = Thumbnail::kGreyUnit * static_cast<float>(view.grey[view.index(x, y)] - mean);
     }
   }
 }
 
 // Slopes from one cell to the next are mostly noise, and noise would pass for structure: a plane through 7 x 7 cells instead. NaN
 // at an edge and beside a cell without depth.
-void fit_slopes(const ViewThumbnail& view, const std::vector<float>& inverse, std::vector<Eigen::Vector2f>* slopes) {
+void fit_slopes(const Thumbnail& view, const std::vector<float>& inverse, std::vector<Eigen::Vector2f>* slopes) {
   constexpr int kRadius = 3;
   constexpr float kSumOfSquares = 7 * (9 + 4 + 1 + 0 + 1 + 4 + 9);
   slopes->assign(view.depth.size(), Eigen::Vector2f::Constant(std::numeric_limits<float>::quiet_NaN()));
@@ -84,13 +84,13 @@ void fit_slopes(const ViewThumbnail& view, const std::vector<float>& inverse, st
   }
 }
 
-void invert_depth(const ViewThumbnail& view, std::vector<float>* inverse) {
+void invert_depth(const Thumbnail& view, std::vector<float>* inverse) {
   inverse->resize(view.depth.size());
   for (std::size_t i = 0; i < view.depth.size(); ++i)
-    (*inverse)[i] = view.depth[i] == 0 ? 0 : 1 / (ViewThumbnail::kDepthUnitM * static_cast<float>(view.depth[i]));
+    (*inverse)[i] = view.depth[i] == 0 ? 0 : 1 / (Thumbnail::kDepthUnitM * static_cast<float>(view.depth[i]));
 }
 
-std::optional<Surroundings> look(const ViewThumbnail& view, const std::vector<float>& grey, const std::vector<float>& inverse,
+std::optional<Surroundings> look(const Thumbnail& view, const std::vector<float>& grey, const std::vector<float>& inverse,
                                  const std::vector<Eigen::Vector2f>& slopes, double x, double y) {
   const double column = std::floor(x), row = std::floor(y);
   if (!(column >= 0 && row >= 0 && column < view.width - 1 && row < view.height - 1)) return std::nullopt;
@@ -133,7 +133,7 @@ Vector6d change_from(const Rigid3& T_a_b_predicted, const Rigid3& T_a_b) {
 
 }  // namespace
 
-void DenseAligner::prepare(const ViewThumbnail& b) {
+void DenseAligner::prepare(const Thumbnail& b) {
   points_.clear();
   remove_slow_changes(b, &grey_b_);
   for (int y = 0; y < b.height; ++y) {
@@ -141,13 +141,13 @@ void DenseAligner::prepare(const ViewThumbnail& b) {
       const std::size_t i = b.index(x, y);
       if (b.depth[i] == 0) continue;
       const Eigen::Vector2d ray = camera_.color.undistort({(x + 0.5) * b.cell_px - 0.5, (y + 0.5) * b.cell_px - 0.5});
-      const double z = b.depth[i] * static_cast<double>(ViewThumbnail::kDepthUnitM);
+      const double z = b.depth[i] * static_cast<double>(Thumbnail::kDepthUnitM);
       points_.push_back({z * ray.homogeneous(), grey_b_[i]});
     }
   }
 }
 
-DenseAligner::Equations DenseAligner::linearize(const ViewThumbnail& a, const ViewThumbnail& b, const Rigid3& T_a_b) {
+DenseAligner::Equations DenseAligner::linearize(const Thumbnail& a, const Thumbnail& b, const Rigid3& T_a_b) {
   pairs_.clear();
   const Eigen::Matrix3d R = T_a_b.rotation.toRotationMatrix();
   const double fx = camera_.color.fx / b.cell_px, fy = camera_.color.fy / b.cell_px;
@@ -198,8 +198,7 @@ DenseAligner::Equations DenseAligner::linearize(const ViewThumbnail& a, const Vi
   return equations;
 }
 
-DenseAlignment DenseAligner::align(const ViewThumbnail& a, const ViewThumbnail& b, const Rigid3& T_a_b_predicted,
-                                   const Matrix6d& covariance) {
+DenseAlignment DenseAligner::align(const Thumbnail& a, const Thumbnail& b, const Rigid3& T_a_b_predicted, const Matrix6d& covariance) {
   DenseAlignment result;
   if (a.empty() || b.empty()) return result;
   prepare(b);

@@ -29,8 +29,7 @@ class DenseAligner {
 
   /// Starts at the prediction, which is a measurement like any other: directions that the views say nothing about, as along a
   /// bare wall, stay as predicted, with the covariance of the prediction (that of pose_error(), axes of a).
-  [[nodiscard]] DenseAlignment align(const ViewThumbnail& a, const ViewThumbnail& b, const Rigid3& T_a_b_predicted,
-                                     const Matrix6d& covariance);
+  [[nodiscard]] DenseAlignment align(const Thumbnail& a, const Thumbnail& b, const Rigid3& T_a_b_predicted, const Matrix6d& covariance);
 
  private:
   struct Equations {
@@ -38,8 +37,8 @@ class DenseAligner {
     Vector6d g = Vector6d::Zero();
     double overlap = 0, inlier_share = 0;
   };
-  void prepare(const ViewThumbnail& b);
-  [[nodiscard]] Equations linearize(const ViewThumbnail& a, const ViewThumbnail& b, const Rigid3& T_a_b);
+  void prepare(const Thumbnail& b);
+  [[nodiscard]] Equations linearize(const Thumbnail& a, const Thumbnail& b, const Rigid3& T_a_b);
 
   struct Point {
     Eigen::Vector3d p_b;

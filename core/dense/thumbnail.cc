@@ -19,7 +19,7 @@ ThumbnailMaker::ThumbnailMaker(const RgbdCamera& camera) : camera_(camera), dept
 
 // Half of the columns and rows, those that lie symmetrically in cells of four and eight pixels: the mean of the samples is then
 // that of the cell. Every fourth where each has to be projected.
-void ThumbnailMaker::sample_depth(ImageView<std::uint16_t> depth, const ViewThumbnail& thumbnail) {
+void ThumbnailMaker::sample_depth(ImageView<std::uint16_t> depth, const Thumbnail& thumbnail) {
   samples_.clear();
   const Eigen::Matrix3d R_color_depth = camera_.T_color_depth.rotation.toRotationMatrix();
   const auto next = [&](int i) { return camera_.is_depth_registered ? i + (i % 4 == 0 ? 3 : 1) : i + 4; };
@@ -43,14 +43,14 @@ void ThumbnailMaker::sample_depth(ImageView<std::uint16_t> depth, const ViewThum
   }
 }
 
-ViewThumbnail ThumbnailMaker::make(const Frame& frame) {
-  ViewThumbnail thumbnail;
-  const int cell = thumbnail.cell_px = std::max((frame.gray.width + ViewThumbnail::kColumns - 1) / ViewThumbnail::kColumns, 1);
+Thumbnail ThumbnailMaker::make(const Frame& frame) {
+  Thumbnail thumbnail;
+  const int cell = thumbnail.cell_px = std::max((frame.gray.width + Thumbnail::kColumns - 1) / Thumbnail::kColumns, 1);
   thumbnail.width = frame.gray.width / cell;
   thumbnail.height = frame.gray.height / cell;
   const std::size_t count = thumbnail.index(0, thumbnail.height);
   thumbnail.grey.resize(count);
-  const float to_units = 1.0F / (ViewThumbnail::kGreyUnit * static_cast<float>(cell * cell));
+  const float to_units = 1.0F / (Thumbnail::kGreyUnit * static_cast<float>(cell * cell));
   for (int row = 0; row < thumbnail.height; ++row) {
     for (int column = 0; column < thumbnail.width; ++column) {
       std::uint32_t sum = 0;
@@ -74,7 +74,7 @@ ViewThumbnail ThumbnailMaker::make(const Frame& frame) {
   thumbnail.depth.assign(count, 0);
   for (std::size_t i = 0; i < count; ++i) {
     if (counts_[i] < kMinSamples) continue;
-    const float units = static_cast<float>(counts_[i]) / sum_per_m_[i] / ViewThumbnail::kDepthUnitM;
+    const float units = static_cast<float>(counts_[i]) / sum_per_m_[i] / Thumbnail::kDepthUnitM;
     if (units < 65535) thumbnail.depth[i] = static_cast<std::uint16_t>(std::lround(units));
   }
   return thumbnail;

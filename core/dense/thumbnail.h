@@ -13,7 +13,7 @@
 
 namespace camloc {
 
-struct ViewThumbnail {
+struct Thumbnail {
   static constexpr int kColumns = 80;  ///< aimed at
   static constexpr float kGreyUnit = 1.0F / 128, kDepthUnitM = 0.00025F;
 
@@ -34,14 +34,14 @@ struct ViewThumbnail {
 class ThumbnailMaker {
  public:
   explicit ThumbnailMaker(const RgbdCamera& camera);
-  [[nodiscard]] ViewThumbnail make(const Frame& frame);
+  [[nodiscard]] Thumbnail make(const Frame& frame);
 
  private:
   struct Sample {
     std::uint32_t cell;
     float z_m;
   };
-  void sample_depth(ImageView<std::uint16_t> depth, const ViewThumbnail& thumbnail);
+  void sample_depth(ImageView<std::uint16_t> depth, const Thumbnail& thumbnail);
 
   RgbdCamera camera_;
   UndistortionTable depth_rays_;

@@ -68,8 +68,8 @@ class Localizer {
   RgbdCamera camera_;
   LocalizerOptions options_;
   StageTimer timer_;
-  ViewExtractor extractor_;
-  ViewFeatures view_;  ///< of the frame at hand
+  FrameExtractor extractor_;
+  FrameFeatures view_;  ///< of the frame at hand
   MapLandmarks landmarks_;
   PoseSolver solver_;
   std::vector<std::unique_ptr<Proposer>> proposers_;

@@ -16,7 +16,7 @@
 #include "core/localize/localizer_numbers.h"
 #include "core/localize/pose_hint.h"
 #include "core/map/map_view.h"
-#include "core/registration/view_features.h"
+#include "core/registration/frame_features.h"
 
 namespace camloc {
 
@@ -39,7 +39,7 @@ struct Proposal {
 /// The frame at hand.
 struct ProposerInput {
   std::int64_t stamp_ns = 0;
-  const ViewFeatures* view = nullptr;
+  const FrameFeatures* view = nullptr;
   const Gate* gate = nullptr;  ///< what is known from the frames before
 };
 

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "core/map/map_data.h"
-#include "core/registration/view_features.h"
+#include "core/registration/frame_features.h"
 
 namespace camloc {
 
 struct KeyframeView {
-  ViewFeatures view;                     ///< one feature a landmark, with its first descriptor
+  FrameFeatures view;                    ///< one feature a landmark, with its first descriptor
   std::vector<std::uint32_t> landmarks;  ///< of each feature
 };
 

@@ -61,7 +61,7 @@ LandmarkFusion::LandmarkFusion(const Intrinsics& color, const DepthNoise& depth_
   }
 }
 
-void LandmarkFusion::add_view(const ViewFeatures& view) {
+void LandmarkFusion::add_view(const FrameFeatures& view) {
   const std::size_t size = std::min(view.features.size(), max_features_);
   views_.emplace_back();
   poses_.push_back(view.T_map_camera);
@@ -103,7 +103,7 @@ void LandmarkFusion::add_view(const ViewFeatures& view) {
 }
 
 // Landmarks in the voxels around the view's own 3D points: what lies elsewhere is out of sight or at another depth.
-void LandmarkFusion::gather_candidates(const ViewFeatures& view) {
+void LandmarkFusion::gather_candidates(const FrameFeatures& view) {
   std::vector<std::array<std::int64_t, 3>> occupied;
   for (std::size_t i = 0; i < landmark_of_feature_.size(); ++i) {
     if (view.depth_m[i] > 0) occupied.push_back(voxel_of(view.T_map_camera * view.point_camera(i)));
@@ -126,7 +126,7 @@ void LandmarkFusion::gather_candidates(const ViewFeatures& view) {
 }
 
 // All admissible pairs of a candidate and a feature, best descriptor first.
-void LandmarkFusion::find_pairs(const ViewFeatures& view) {
+void LandmarkFusion::find_pairs(const FrameFeatures& view) {
   pairs_.clear();
   const Rigid3 T_camera_map = view.T_map_camera.inverse();
   const Eigen::Matrix3d R = T_camera_map.rotation.toRotationMatrix();  // a third of the work of a quaternion, a million times
@@ -139,7 +139,7 @@ void LandmarkFusion::find_pairs(const ViewFeatures& view) {
   });
 }
 
-void LandmarkFusion::pair_landmark(const ViewFeatures& view, std::uint32_t index, const Eigen::Vector3d& p_camera) {
+void LandmarkFusion::pair_landmark(const FrameFeatures& view, std::uint32_t index, const Eigen::Vector3d& p_camera) {
   const Fused& landmark = landmarks_[index];
   const Eigen::Vector2f pixel = color_.project(p_camera).cast<float>();
   const float reach = kRadiusPx * scale_[255];
@@ -165,7 +165,7 @@ void LandmarkFusion::pair_landmark(const ViewFeatures& view, std::uint32_t index
   }
 }
 
-bool LandmarkFusion::is_consistent(const Fused& landmark, double z_m, const ViewFeatures& view, std::size_t feature) const {
+bool LandmarkFusion::is_consistent(const Fused& landmark, double z_m, const FrameFeatures& view, std::size_t feature) const {
   const double depth = view.depth_m[feature];
   if (depth <= 0) return false;
   const double sigma = depth_noise_.sigma_m(depth) * std::sqrt(1.0 + 1.0 / landmark.num_observations);
@@ -176,7 +176,7 @@ bool LandmarkFusion::is_consistent(const Fused& landmark, double z_m, const View
 }
 
 // The landmark that this view has just started at the same corner on another pyramid level, or kNone.
-std::int64_t LandmarkFusion::find_new_landmark(const ViewFeatures& view, std::size_t feature) const {
+std::int64_t LandmarkFusion::find_new_landmark(const FrameFeatures& view, std::size_t feature) const {
   const Keypoint& keypoint = view.features.keypoints[feature];
   const float radius = kRadiusPx * scale_[keypoint.level];
   const auto bucket_of = [&](float value, int count) {
@@ -199,12 +199,12 @@ std::int64_t LandmarkFusion::find_new_landmark(const ViewFeatures& view, std::si
   return kNone;
 }
 
-float LandmarkFusion::reference_m(const ViewFeatures& view, std::size_t feature) const {
+float LandmarkFusion::reference_m(const FrameFeatures& view, std::size_t feature) const {
   const float distance = view.depth_m[feature] * std::sqrt(1.0F + view.normalized[feature].squaredNorm());
   return distance * scale_[view.features.keypoints[feature].level];
 }
 
-void LandmarkFusion::widen_scale(const ViewFeatures& view, std::size_t feature, Fused* landmark) const {
+void LandmarkFusion::widen_scale(const FrameFeatures& view, std::size_t feature, Fused* landmark) const {
   const float reference = reference_m(view, feature);
   landmark->min_reference_m = std::min(landmark->min_reference_m, reference);
   landmark->max_reference_m = std::max(landmark->max_reference_m, reference);
@@ -216,7 +216,7 @@ std::uint8_t LandmarkFusion::cell_of(const Keypoint& keypoint) const {
   return static_cast<std::uint8_t>(row * kCellColumns + column);
 }
 
-std::uint32_t LandmarkFusion::create(const ViewFeatures& view, std::size_t feature) {
+std::uint32_t LandmarkFusion::create(const FrameFeatures& view, std::size_t feature) {
   const auto index = static_cast<std::uint32_t>(landmarks_.size());
   Fused& landmark = landmarks_.emplace_back();
   landmark.origin_m = landmark.position_m = view.T_map_camera * view.point_camera(feature);
@@ -228,7 +228,7 @@ std::uint32_t LandmarkFusion::create(const ViewFeatures& view, std::size_t featu
 }
 
 // Inverse-covariance weighted mean. The covariance is that of a pixel and a depth: p = z (x, y, 1).
-void LandmarkFusion::observe(const ViewFeatures& view, std::size_t feature, std::uint32_t index) {
+void LandmarkFusion::observe(const FrameFeatures& view, std::size_t feature, std::uint32_t index) {
   Fused& landmark = landmarks_[index];
   const Keypoint& keypoint = view.features.keypoints[feature];
   const Eigen::Vector3d p_camera = view.point_camera(feature), p_map = view.T_map_camera * p_camera;

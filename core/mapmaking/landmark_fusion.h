@@ -19,7 +19,7 @@
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
 #include "core/map/map_data.h"
-#include "core/registration/view_features.h"
+#include "core/registration/frame_features.h"
 
 namespace camloc {
 
@@ -36,7 +36,7 @@ class LandmarkFusion {
   /// Views come from an extractor with these ORB settings; features of a view beyond orb.num_features are ignored.
   LandmarkFusion(const Intrinsics& color, const DepthNoise& depth_noise, const OrbOptions& orb);
 
-  void add_view(const ViewFeatures& view);
+  void add_view(const FrameFeatures& view);
 
   [[nodiscard]] std::size_t num_landmarks() const { return landmarks_.size(); }
   [[nodiscard]] std::uint64_t num_observations() const { return num_observations_; }
@@ -74,19 +74,19 @@ class LandmarkFusion {
     std::int32_t feature;
   };
 
-  void gather_candidates(const ViewFeatures& view);
-  void find_pairs(const ViewFeatures& view);
-  void pair_landmark(const ViewFeatures& view, std::uint32_t index, const Eigen::Vector3d& p_camera);
-  bool is_consistent(const Fused& landmark, double z_m, const ViewFeatures& view, std::size_t feature) const;
-  std::int64_t find_new_landmark(const ViewFeatures& view, std::size_t feature) const;
-  void observe(const ViewFeatures& view, std::size_t feature, std::uint32_t index);
-  void widen_scale(const ViewFeatures& view, std::size_t feature, Fused* landmark) const;
-  std::uint32_t create(const ViewFeatures& view, std::size_t feature);
+  void gather_candidates(const FrameFeatures& view);
+  void find_pairs(const FrameFeatures& view);
+  void pair_landmark(const FrameFeatures& view, std::uint32_t index, const Eigen::Vector3d& p_camera);
+  bool is_consistent(const Fused& landmark, double z_m, const FrameFeatures& view, std::size_t feature) const;
+  std::int64_t find_new_landmark(const FrameFeatures& view, std::size_t feature) const;
+  void observe(const FrameFeatures& view, std::size_t feature, std::uint32_t index);
+  void widen_scale(const FrameFeatures& view, std::size_t feature, Fused* landmark) const;
+  std::uint32_t create(const FrameFeatures& view, std::size_t feature);
   void add_appearance(const Keypoint& keypoint, const Descriptor& descriptor, std::uint32_t index);
   void choose_descriptors(const Fused& from, MapLandmark* to, std::vector<std::uint32_t>* support) const;
   void set_viewing_directions(std::vector<MapLandmark>* landmarks) const;
   [[nodiscard]] std::uint8_t cell_of(const Keypoint& keypoint) const;
-  [[nodiscard]] float reference_m(const ViewFeatures& view, std::size_t feature) const;
+  [[nodiscard]] float reference_m(const FrameFeatures& view, std::size_t feature) const;
 
   Intrinsics color_;
   DepthNoise depth_noise_;

@@ -31,7 +31,7 @@ struct MapBuilder::Impl {
 
   RgbdCamera camera;
   MapBuildOptions options;
-  ViewExtractor extractor;
+  FrameExtractor extractor;
   LandmarkFusion fusion;
   PoseConsistency consistency;
   MapBuildReport report;
@@ -45,14 +45,14 @@ Status MapBuilder::add_frame(const Frame& frame, const Rigid3& T_map_camera) {
   if (status.is_ok() && !(T_map_camera.translation.allFinite() && T_map_camera.rotation.coeffs().allFinite()))
     status = {ErrorCode::kInvalid, "frame " + std::to_string(frame.sequence) + ": pose is not finite"};
   if (!status.is_ok()) return status;
-  ViewFeatures view;
+  FrameFeatures view;
   impl_->extractor.extract(frame, &view);
   view.T_map_camera = T_map_camera;
   add_view(view);
   return Status::ok();
 }
 
-void MapBuilder::add_view(const ViewFeatures& view) {
+void MapBuilder::add_view(const FrameFeatures& view) {
   impl_->fusion.add_view(view);
   impl_->consistency.add_view(view);
   ++impl_->report.num_frames;

@@ -13,7 +13,7 @@
 #include "core/geometry/camera.h"
 #include "core/map/map_data.h"
 #include "core/mapmaking/map_assembly.h"
-#include "core/registration/view_features.h"
+#include "core/registration/frame_features.h"
 
 namespace camloc {
 
@@ -25,8 +25,8 @@ class MapBuilder {
   /// One view with its given pose. kInvalid when an image size does not fit the camera or the pose is not finite: the
   /// frame is skipped, the builder goes on. A frame without depth is skipped, too.
   [[nodiscard]] Status add_frame(const Frame& frame, const Rigid3& T_map_camera);
-  /// The same for a view whose features were extracted before (ViewExtractor, with the options' OrbOptions), pose included.
-  void add_view(const ViewFeatures& view);
+  /// The same for a view whose features were extracted before (FrameExtractor, with the options' OrbOptions), pose included.
+  void add_view(const FrameFeatures& view);
   /// Counts so far (frames, observations, landmarks before pruning), for a progress display.
   [[nodiscard]] MapBuildReport progress() const;
   /// Fuses, covers, prunes to the budget, trains the words. kInvalid when no landmark is left.

@@ -27,7 +27,7 @@ PoseSolverOptions solver_options(const PoseConsistencyOptions& options) {
 /// The points that a view measured, in its own camera: what another view is registered to.
 class ViewPoints final : public LandmarkSource {
  public:
-  explicit ViewPoints(const ViewFeatures& view) : view_(&view) {}
+  explicit ViewPoints(const FrameFeatures& view) : view_(&view) {}
   [[nodiscard]] std::span<const ProjectedLandmark> project(const Rigid3&, float) override { return {}; }
   [[nodiscard]] std::span<const Descriptor> descriptors() const override { return view_->features.descriptors; }
   [[nodiscard]] Eigen::Vector3f position_m(std::int32_t i) const override {
@@ -35,11 +35,11 @@ class ViewPoints final : public LandmarkSource {
   }
 
  private:
-  const ViewFeatures* view_;
+  const FrameFeatures* view_;
 };
 
 /// T_from_to and its covariance, from the depth points of one and the pixels of the other.
-PoseEvidence register_views(const ViewFeatures& from, const ViewFeatures& to, std::uint64_t seed, PoseSolver* solver) {
+PoseEvidence register_views(const FrameFeatures& from, const FrameFeatures& to, std::uint64_t seed, PoseSolver* solver) {
   solver->candidates().clear();
   for (std::size_t i = 0; i < from.size(); ++i) {
     if (from.depth_m[i] > 0)
@@ -74,7 +74,7 @@ PoseConsistency::PoseConsistency(const RgbdCamera& camera, const PyramidLevels& 
     : camera_(camera), levels_(levels), options_(options) {}
 
 // Keeps every stride-th view; when the store is full, every second of those goes and the stride doubles.
-void PoseConsistency::add_view(const ViewFeatures& view) {
+void PoseConsistency::add_view(const FrameFeatures& view) {
   if (num_added_++ % stride_ != 0) return;
   if (views_.size() >= options_.max_views) {
     for (std::size_t i = 0; 2 * i < views_.size(); ++i) views_[i] = std::move(views_[2 * i]);
@@ -107,8 +107,8 @@ PoseConsistencyEstimate PoseConsistency::estimate() const {
   std::vector<double> errors_m, variances_m2, errors_rad, variances_rad2;
   const std::vector<Pair> pairs = candidate_pairs();
   for (std::size_t k = 0; k < pairs.size() && k < options_.max_attempts && result.num_pairs < options_.max_pairs; ++k) {
-    const ViewFeatures& from = views_[pairs[k].from];
-    const ViewFeatures& to = views_[pairs[k].to];
+    const FrameFeatures& from = views_[pairs[k].from];
+    const FrameFeatures& to = views_[pairs[k].to];
     const PoseEvidence seen = register_views(from, to, k, &solver);
     if (!seen.is_found || seen.num_inliers < static_cast<std::uint32_t>(options_.min_inliers) || seen.inlier_ratio() < kMinInlierRatio)
       continue;

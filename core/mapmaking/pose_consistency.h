@@ -35,7 +35,7 @@ struct PoseConsistencyEstimate {
 class PoseConsistency {
  public:
   PoseConsistency(const RgbdCamera& camera, const PyramidLevels& levels, const PoseConsistencyOptions& options);
-  void add_view(const ViewFeatures& view);
+  void add_view(const FrameFeatures& view);
   [[nodiscard]] PoseConsistencyEstimate estimate() const;
 
  private:
@@ -49,7 +49,7 @@ class PoseConsistency {
   PyramidLevels levels_;
   PoseConsistencyOptions options_;
   std::uint64_t num_added_ = 0, stride_ = 1;
-  std::vector<ViewFeatures> views_;
+  std::vector<FrameFeatures> views_;
 };
 
 /// The standard deviation that, added to each error's own variance, makes the squared normalized errors have the median

@@ -17,8 +17,8 @@
 #include "core/map/map_data.h"
 #include "core/map/map_view.h"
 #include "core/map/retrieval.h"
+#include "core/registration/frame_registration.h"
 #include "core/registration/landmark_set.h"
-#include "core/registration/view_registration.h"
 
 namespace camloc {
 

@@ -57,7 +57,7 @@ PoseSolver::PoseSolver(const RgbdCamera& camera, const PyramidLevels& levels, co
   refinement_.use_depth = options.use_depth;
 }
 
-void PoseSolver::begin(const ViewFeatures& view, const MeasuredDepth& depth) {
+void PoseSolver::begin(const FrameFeatures& view, const MeasuredDepth& depth) {
   view_ = &view;
   depth_ = depth;
   grid_.assign(view.features.keypoints);
@@ -132,7 +132,8 @@ void PoseSolver::fill_pairs(const LandmarkSource& landmarks, std::span<const Mat
     const Eigen::Vector3f p_map = landmarks.position_m(match.landmark);
     if (T_map_explained != nullptr && is_explained(p_map, i, *T_map_explained)) continue;
     pairs_.add(view_->normalized[i].x(), view_->normalized[i].y(), p_map.x(), p_map.y(), p_map.z(), view_->depth_m[i],
-               levels_.pair_sigma_px(view_->features.keypoints[i].level), static_cast<float>(match.distance), match.feature, match.landmark);
+               levels_.pair_sigma_px(view_->features.keypoints[i].level), static_cast<float>(match.distance), match.feature,
+               match.landmark);
   }
   pairs_.sort_by_rank();
   pairs_.truncate(limit);

@@ -19,11 +19,11 @@
 #include "core/geometry/correspondences.h"
 #include "core/geometry/pnp_ransac.h"
 #include "core/geometry/pose_refinement.h"
+#include "core/registration/frame_features.h"
 #include "core/registration/image_cells.h"
 #include "core/registration/keypoint_noise.h"
 #include "core/registration/landmark_source.h"
 #include "core/registration/pose_evidence.h"
-#include "core/registration/view_features.h"
 
 namespace camloc {
 
@@ -56,7 +56,7 @@ class PoseSolver {
   PoseSolver(const RgbdCamera& camera, const PyramidLevels& levels, const PoseSolverOptions& options, StageTimer* timer = nullptr);
 
   /// The view that all calls until the next begin() are about; it must stay as it is.
-  void begin(const ViewFeatures& view, const MeasuredDepth& depth = {});
+  void begin(const FrameFeatures& view, const MeasuredDepth& depth = {});
 
   /// Features within `radius_px` of where a camera there would see landmarks. Valid until the next call.
   std::span<const Match> search_by_projection(LandmarkSource* landmarks, const Rigid3& T_map_camera, float radius_px);
@@ -95,7 +95,7 @@ class PoseSolver {
   double focal_px_;
   PoseSolverOptions options_;
   PoseRefinementOptions refinement_;
-  const ViewFeatures* view_ = nullptr;
+  const FrameFeatures* view_ = nullptr;
   MeasuredDepth depth_;
   FeatureGrid grid_;
   GuidedMatcher guided_;

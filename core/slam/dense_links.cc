@@ -14,7 +14,7 @@ constexpr double kPriorSigmaM = 0.05, kPriorSigmaRad = 0.05;  // of the keyframe
 
 }  // namespace
 
-int DenseLinks::add_keyframe(const SlamMap& map, std::uint32_t keyframe, const ViewThumbnail& thumbnail) {
+int DenseLinks::add_keyframe(const SlamMap& map, std::uint32_t keyframe, const Thumbnail& thumbnail) {
   int num_links = 0;
   const SlamKeyframe& now = map.keyframe(keyframe);
   for (const std::uint32_t step : kSteps) {

@@ -24,7 +24,7 @@ class DenseLinks {
   explicit DenseLinks(const RgbdCamera& camera) : aligner_(camera) {}
 
   /// The keyframe that has just come into the map; returns how many links it got. One without thumbnail gets none.
-  int add_keyframe(const SlamMap& map, std::uint32_t keyframe, const ViewThumbnail& thumbnail);
+  int add_keyframe(const SlamMap& map, std::uint32_t keyframe, const Thumbnail& thumbnail);
   /// A link that comes from elsewhere.
   void add(const PoseGraphEdge& link) { links_.push_back(link); }
 
@@ -33,7 +33,7 @@ class DenseLinks {
  private:
   struct Recent {
     std::uint32_t keyframe;
-    ViewThumbnail thumbnail;
+    Thumbnail thumbnail;
   };
   DenseAligner aligner_;
   std::deque<Recent> recent_;  ///< the newest at the front

@@ -21,7 +21,7 @@ double worst_sigma(const Eigen::Matrix3d& covariance) {
 
 }  // namespace
 
-void DepthBridge::begin_at(std::int64_t stamp_ns, const ViewThumbnail& thumbnail) {
+void DepthBridge::begin_at(std::int64_t stamp_ns, const Thumbnail& thumbnail) {
   begin_ns_ = last_ns_ = stamp_ns;
   num_steps_ = 0;
   anchor_ = thumbnail;
@@ -33,7 +33,7 @@ void DepthBridge::forget() {
   anchor_ = {};
 }
 
-std::optional<DepthBridge::Step> DepthBridge::step(std::int64_t stamp_ns, const ViewThumbnail& thumbnail,
+std::optional<DepthBridge::Step> DepthBridge::step(std::int64_t stamp_ns, const Thumbnail& thumbnail,
                                                    const Rigid3& T_begin_camera_expected) {
   const double dt_s = seconds(stamp_ns - last_ns_);
   if (anchor_.empty() || thumbnail.empty() || !(dt_s > 0 && dt_s <= kMaxGapS) ||

@@ -22,7 +22,7 @@ class DepthBridge {
   DepthBridge(const RgbdCamera& camera, const SlamNumbers& numbers) : numbers_(numbers), aligner_(camera) {}
 
   /// A view was tracked by its features: the next bridge begins here. Without a thumbnail there is none.
-  void begin_at(std::int64_t stamp_ns, const ViewThumbnail& thumbnail);
+  void begin_at(std::int64_t stamp_ns, const Thumbnail& thumbnail);
   /// Tracking goes on somewhere else.
   void forget();
 
@@ -32,7 +32,7 @@ class DepthBridge {
   };
   /// The view that followed, given where it is expected; nothing where it does not fit or too little is known by now, and then
   /// the bridge has ended.
-  [[nodiscard]] std::optional<Step> step(std::int64_t stamp_ns, const ViewThumbnail& thumbnail, const Rigid3& T_begin_camera_expected);
+  [[nodiscard]] std::optional<Step> step(std::int64_t stamp_ns, const Thumbnail& thumbnail, const Rigid3& T_begin_camera_expected);
 
   /// Views have been bridged since begin_at().
   [[nodiscard]] bool is_open() const { return num_steps_ > 0; }
@@ -42,7 +42,7 @@ class DepthBridge {
   DenseAligner aligner_;
   std::int64_t begin_ns_ = 0, last_ns_ = 0;
   int num_steps_ = 0;
-  ViewThumbnail anchor_;
+  Thumbnail anchor_;
   Step anchor_step_, last_;  ///< where the anchor and the last view are
 };
 

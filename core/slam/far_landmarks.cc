@@ -35,14 +35,14 @@ OpenFeatures open_features(const SlamKeyframe& keyframe) {
 }
 
 /// Reprojection error in standard deviations; large behind the camera.
-double error_sigmas(const SlamMap& map, const ViewFeatures& view, std::uint32_t feature, const Eigen::Vector3d& p_map) {
+double error_sigmas(const SlamMap& map, const FrameFeatures& view, std::uint32_t feature, const Eigen::Vector3d& p_map) {
   const Eigen::Vector3d p_camera = view.T_map_camera.inverse() * p_map;
   if (p_camera.z() < 0.1) return 1e9;
   const Eigen::Vector2d error = p_camera.head<2>() / p_camera.z() - view.normalized[feature].cast<double>();
   return error.norm() * map.camera().color.mean_focal_px() / map.levels().sigma_px(view.features.keypoints[feature].level);
 }
 
-bool is_sound(const SlamNumbers& numbers, const SlamMap& map, const ViewFeatures& a, std::uint32_t feature_a, const ViewFeatures& b,
+bool is_sound(const SlamNumbers& numbers, const SlamMap& map, const FrameFeatures& a, std::uint32_t feature_a, const FrameFeatures& b,
               std::uint32_t feature_b, const Eigen::Vector3d& p_map) {
   const Eigen::Vector3d to_a = a.T_map_camera.translation - p_map, to_b = b.T_map_camera.translation - p_map;
   const double distance = std::max(to_a.norm(), to_b.norm());
@@ -84,8 +84,8 @@ int add_with_partner(const SlamNumbers& numbers, std::uint32_t keyframe, std::ui
   for (std::uint32_t i = 0; i < here.index.size(); ++i) {
     const NearestDescriptor& n = nearest[i];
     if (n.distance > kMaxDistanceBits || n.distance > kMaxRatio * n.second || back[n.index].index != i) continue;
-    const ViewFeatures& a = map->keyframe(keyframe).view;
-    const ViewFeatures& b = map->keyframe(partner).view;
+    const FrameFeatures& a = map->keyframe(keyframe).view;
+    const FrameFeatures& b = map->keyframe(partner).view;
     const std::uint32_t feature_a = here.index[i], feature_b = there.index[n.index];
     const auto point =
         triangulate(a.T_map_camera, a.normalized[feature_a].cast<double>(), b.T_map_camera, b.normalized[feature_b].cast<double>());

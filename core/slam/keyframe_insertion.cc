@@ -16,7 +16,7 @@ constexpr int kMaxFuseDistance = 50;
 
 }  // namespace
 
-std::uint32_t insert_keyframe(std::uint64_t frame, std::uint32_t segment, const ViewFeatures& view,
+std::uint32_t insert_keyframe(std::uint64_t frame, std::uint32_t segment, const FrameFeatures& view,
                               const std::vector<LandmarkObservation>& tracked, SlamMap* map) {
   const std::uint32_t keyframe = map->add_keyframe(frame, segment, view);
   for (const LandmarkObservation& pair : tracked) {
@@ -33,7 +33,7 @@ std::uint32_t insert_keyframe(std::uint64_t frame, std::uint32_t segment, const 
 }
 
 int fuse_into_keyframe(LandmarkSet* landmarks, std::uint32_t keyframe, float radius_px, PoseSolver* solver, SlamMap* map) {
-  const ViewFeatures& view = map->keyframe(keyframe).view;
+  const FrameFeatures& view = map->keyframe(keyframe).view;
   const Rigid3 T_camera_map = view.T_map_camera.inverse();
   int num_fused = 0;
   solver->begin(view);

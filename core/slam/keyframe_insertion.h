@@ -8,14 +8,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/registration/frame_registration.h"
 #include "core/registration/landmark_set.h"
-#include "core/registration/view_registration.h"
 #include "core/slam/slam_map.h"
 
 namespace camloc {
 
 /// Adds the keyframe with its pose and everything it sees; `tracked` may be empty (the first of a segment).
-std::uint32_t insert_keyframe(std::uint64_t frame, std::uint32_t segment, const ViewFeatures& view,
+std::uint32_t insert_keyframe(std::uint64_t frame, std::uint32_t segment, const FrameFeatures& view,
                               const std::vector<LandmarkObservation>& tracked, SlamMap* map);
 
 /// Looks for landmarks of `landmarks` in a keyframe, within `radius_px` of their projection and at their depth: observations are

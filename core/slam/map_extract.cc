@@ -28,7 +28,7 @@ void add_landmark(const SlamMap& map, std::uint32_t index, MapExtract* extract) 
   for (const Observation& s : landmark.observations) {
     const std::uint32_t camera = extract->camera_of_keyframe[s.keyframe];
     if (camera == kAbsent) continue;
-    const ViewFeatures& view = map.keyframe(s.keyframe).view;
+    const FrameFeatures& view = map.keyframe(s.keyframe).view;
     extract->problem.observations.push_back({camera, number, view.normalized[s.feature].x(), view.normalized[s.feature].y(),
                                              view.depth_m[s.feature], map.levels().sigma_px(view.features.keypoints[s.feature].level)});
   }

@@ -22,7 +22,7 @@ struct ObservationRefinementReport {
   [[nodiscard]] std::uint64_t num_refined() const { return num_by_verdict[0]; }
 };
 
-/// Moves the image coordinates (ViewFeatures::normalized) of observations; keypoints stay where they were found, so that doing it
+/// Moves the image coordinates (FrameFeatures::normalized) of observations; keypoints stay where they were found, so that doing it
 /// again gives the same. A observation that cannot be aligned, or whose keyframe has no patches, keeps its place. Poses and
 /// landmarks are only asked how a patch is turned and scaled: a few centimetres off does no harm.
 ObservationRefinementReport refine_observations(SlamMap* map);

@@ -19,7 +19,7 @@ constexpr double kBridgedKeyframeM = 0.15, kBridgedKeyframeRad = 0.1;
 constexpr std::uint32_t kBridgedNeighbours = 3;  // keyframes before it that its few features are compared with
 constexpr float kBridgedRadiusPx = 8;
 
-std::size_t num_with_depth(const ViewFeatures& view) {
+std::size_t num_with_depth(const FrameFeatures& view) {
   return static_cast<std::size_t>(std::count_if(view.depth_m.begin(), view.depth_m.end(), [](float z) { return z > 0; }));
 }
 
@@ -36,15 +36,15 @@ Slam::Slam(const RgbdCamera& camera, const SlamOptions& options)
       links_(camera),
       depth_weight_(options.numbers.depth_share) {}
 
-ViewReport Slam::add_view(std::uint64_t frame, const ViewFeatures& view, const ViewThumbnail& thumbnail) {
-  const ViewReport report = place_view(frame, view, thumbnail);
+FrameReport Slam::add_view(std::uint64_t frame, const FrameFeatures& view, const Thumbnail& thumbnail) {
+  const FrameReport report = place_view(frame, view, thumbnail);
   if (report.is_keyframe && !report.is_bridged)
     links_.add_keyframe(map_, static_cast<std::uint32_t>(map_.keyframes().size()) - 1, thumbnail);
   return report;
 }
 
-ViewReport Slam::place_view(std::uint64_t frame, const ViewFeatures& view, const ViewThumbnail& thumbnail) {
-  ViewReport report;
+FrameReport Slam::place_view(std::uint64_t frame, const FrameFeatures& view, const Thumbnail& thumbnail) {
+  FrameReport report;
   ++counts_.num_views;
   if (map_.keyframes().empty()) {
     if (begin_segment(frame, view, &report))
@@ -84,13 +84,13 @@ ViewReport Slam::place_view(std::uint64_t frame, const ViewFeatures& view, const
 }
 
 // The next view may need this one.
-void Slam::begin_bridge(std::int64_t stamp_ns, const ViewThumbnail& thumbnail) {
+void Slam::begin_bridge(std::int64_t stamp_ns, const Thumbnail& thumbnail) {
   bridge_.begin_at(stamp_ns, thumbnail);
   bridge_begin_ = {tracker_.reference(), tracker_.T_reference_camera()};
 }
 
 // A view full of features that fit nothing is a riddle, no bare wall: only a bridge may lead to one.
-bool Slam::go_on_by_depth(std::uint64_t frame, const ViewFeatures& view, const ViewThumbnail& thumbnail, ViewReport* report) {
+bool Slam::go_on_by_depth(std::uint64_t frame, const FrameFeatures& view, const Thumbnail& thumbnail, FrameReport* report) {
   const bool is_bare = num_with_depth(view) < options_.numbers.min_segment_features;
   if (!is_bare && !bridge_.is_open()) return false;
   const Rigid3 T_map_begin = map_.keyframe(bridge_begin_.reference).view.T_map_camera * bridge_begin_.T_reference_camera;
@@ -116,7 +116,7 @@ bool Slam::go_on_by_depth(std::uint64_t frame, const ViewFeatures& view, const V
 }
 
 // Held by dense links, and by what few features it shares with those before.
-std::uint32_t Slam::add_bridged_keyframe(std::uint64_t frame, ViewFeatures view, const ViewThumbnail& thumbnail,
+std::uint32_t Slam::add_bridged_keyframe(std::uint64_t frame, FrameFeatures view, const Thumbnail& thumbnail,
                                          const DepthBridge::Step& step) {
   const std::uint32_t before = bridge_begin_.reference, last = static_cast<std::uint32_t>(map_.keyframes().size()) - 1;
   const Rigid3 T_before_camera = bridge_begin_.T_reference_camera * step.T_begin_camera;
@@ -138,7 +138,7 @@ std::uint32_t Slam::add_bridged_keyframe(std::uint64_t frame, ViewFeatures view,
 }
 
 // There are features again, but of nothing that is known: the map goes on from here.
-void Slam::end_bridge(std::uint32_t keyframe, ViewReport* report) {
+void Slam::end_bridge(std::uint32_t keyframe, FrameReport* report) {
   tracker_.set_reference(keyframe);
   if (options_.numbers.close_loops != 0) {
     report->loop = loops_.consider(keyframe, places_);
@@ -147,7 +147,7 @@ void Slam::end_bridge(std::uint32_t keyframe, ViewReport* report) {
   tracker_.refresh();
 }
 
-bool Slam::begin_segment(std::uint64_t frame, ViewFeatures view, ViewReport* report) {
+bool Slam::begin_segment(std::uint64_t frame, FrameFeatures view, FrameReport* report) {
   if (num_with_depth(view) < options_.numbers.min_segment_features) return false;
   SegmentBegin begin;
   begin.first_keyframe = static_cast<std::uint32_t>(map_.keyframes().size());
@@ -172,7 +172,7 @@ bool Slam::begin_segment(std::uint64_t frame, ViewFeatures view, ViewReport* rep
   return true;
 }
 
-void Slam::add_keyframe(std::uint64_t frame, ViewFeatures view, const Registration& tracked, ViewReport* report) {
+void Slam::add_keyframe(std::uint64_t frame, FrameFeatures view, const Registration& tracked, FrameReport* report) {
   view.T_map_camera = tracked.T_map_camera;
   report->is_keyframe = true;
   const std::uint32_t keyframe = insert_keyframe(frame, map_.keyframe(tracker_.reference()).segment, view, tracked.inliers, &map_);
@@ -191,12 +191,12 @@ void Slam::add_keyframe(std::uint64_t frame, ViewFeatures view, const Registrati
 }
 
 // A view that was tracked, and what it saw.
-void Slam::remember(std::uint64_t frame, std::int64_t stamp_ns, bool is_keyframe, std::vector<TrackedView::Seen> seen) {
+void Slam::remember(std::uint64_t frame, std::int64_t stamp_ns, bool is_keyframe, std::vector<TrackedFrame::Seen> seen) {
   tracked_.push_back({frame, stamp_ns, tracker_.reference(), tracker_.T_reference_camera(), is_keyframe, std::move(seen)});
 }
 
-std::vector<Slam::TrackedView::Seen> Slam::seen_in(const ViewFeatures& view, const std::vector<LandmarkObservation>& pairs) const {
-  std::vector<TrackedView::Seen> seen;
+std::vector<Slam::TrackedFrame::Seen> Slam::seen_in(const FrameFeatures& view, const std::vector<LandmarkObservation>& pairs) const {
+  std::vector<TrackedFrame::Seen> seen;
   seen.reserve(pairs.size());
   for (const LandmarkObservation& pair : pairs) {
     seen.push_back({pair.landmark, view.normalized[pair.feature].x(), view.normalized[pair.feature].y(), view.depth_m[pair.feature],
@@ -228,11 +228,11 @@ BundleOptions Slam::bundle_options() const {
 }
 
 // Keyframes are final; the views between them are refined on the final landmarks.
-Rigid3 Slam::final_pose(const TrackedView& view) const {
+Rigid3 Slam::final_pose(const TrackedFrame& view) const {
   const Rigid3 T_map_camera = map_.keyframe(view.reference).view.T_map_camera * view.T_reference_camera;
   if (view.is_keyframe) return T_map_camera;
   Correspondences pairs(view.seen.size());
-  for (const TrackedView::Seen& seen : view.seen) {
+  for (const TrackedFrame::Seen& seen : view.seen) {
     const std::int32_t landmark = map_.resolve(seen.landmark);
     if (landmark == kNoLandmark) continue;
     const Eigen::Vector3f p = map_.landmark(static_cast<std::uint32_t>(landmark)).position_m.cast<float>();
@@ -321,7 +321,7 @@ SlamResult Slam::result() const {
   SlamResult result;
   std::map<std::uint32_t, SlamResult::Segment> segments;
   for (const SlamKeyframe& keyframe : map_.keyframes()) ++segments[keyframe.segment].num_keyframes;
-  for (const TrackedView& view : tracked_) {
+  for (const TrackedFrame& view : tracked_) {
     SlamPose& pose = result.poses.emplace_back();
     pose.frame = view.frame;
     pose.stamp_ns = view.stamp_ns;

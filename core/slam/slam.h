@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/dense/thumbnail.h"
-#include "core/registration/view_registration.h"
+#include "core/registration/frame_registration.h"
 #include "core/slam/dense_links.h"
 #include "core/slam/depth_bridge.h"
 #include "core/slam/depth_weight.h"
@@ -39,7 +39,7 @@ struct SlamOptions {
 enum class ViewState : std::uint8_t { kTracked, kLost };
 
 /// What became of one view.
-struct ViewReport {
+struct FrameReport {
   ViewState state = ViewState::kLost;
   std::uint32_t num_inliers = 0;
   bool is_keyframe = false;
@@ -84,7 +84,7 @@ class Slam {
 
   /// The next view; `frame` is its index in the recording, ascending. Patches are kept of those that become keyframes, until
   /// finish(). With thumbnails, stretches without features are bridged, and keyframes linked by all their pixels.
-  ViewReport add_view(std::uint64_t frame, const ViewFeatures& view, const ViewThumbnail& thumbnail = {});
+  FrameReport add_view(std::uint64_t frame, const FrameFeatures& view, const Thumbnail& thumbnail = {});
   [[nodiscard]] SlamCounts counts() const;
 
   [[nodiscard]] const SlamMap& map() const { return map_; }
@@ -100,7 +100,7 @@ class Slam {
 
  private:
   /// A tracked view, relative to a keyframe, with what it saw: enough to refine it once the landmarks are final.
-  struct TrackedView {
+  struct TrackedFrame {
     std::uint64_t frame = 0;
     std::int64_t stamp_ns = 0;
     std::uint32_t reference = 0;
@@ -113,23 +113,23 @@ class Slam {
     std::vector<Seen> seen;
   };
 
-  ViewReport place_view(std::uint64_t frame, const ViewFeatures& view, const ViewThumbnail& thumbnail);
-  void begin_bridge(std::int64_t stamp_ns, const ViewThumbnail& thumbnail);
-  bool go_on_by_depth(std::uint64_t frame, const ViewFeatures& view, const ViewThumbnail& thumbnail, ViewReport* report);
-  std::uint32_t add_bridged_keyframe(std::uint64_t frame, ViewFeatures view, const ViewThumbnail& thumbnail, const DepthBridge::Step& step);
-  void end_bridge(std::uint32_t keyframe, ViewReport* report);
-  bool begin_segment(std::uint64_t frame, ViewFeatures view, ViewReport* report);
-  void add_keyframe(std::uint64_t frame, ViewFeatures view, const Registration& tracked, ViewReport* report);
+  FrameReport place_view(std::uint64_t frame, const FrameFeatures& view, const Thumbnail& thumbnail);
+  void begin_bridge(std::int64_t stamp_ns, const Thumbnail& thumbnail);
+  bool go_on_by_depth(std::uint64_t frame, const FrameFeatures& view, const Thumbnail& thumbnail, FrameReport* report);
+  std::uint32_t add_bridged_keyframe(std::uint64_t frame, FrameFeatures view, const Thumbnail& thumbnail, const DepthBridge::Step& step);
+  void end_bridge(std::uint32_t keyframe, FrameReport* report);
+  bool begin_segment(std::uint64_t frame, FrameFeatures view, FrameReport* report);
+  void add_keyframe(std::uint64_t frame, FrameFeatures view, const Registration& tracked, FrameReport* report);
   void adjust_around(std::uint32_t keyframe);
   void join_leftover_segments();
   void refine_all_observations();
   void count(const LoopReport& loop);
-  void remember(std::uint64_t frame, std::int64_t stamp_ns, bool is_keyframe, std::vector<TrackedView::Seen> seen = {});
-  [[nodiscard]] std::vector<TrackedView::Seen> seen_in(const ViewFeatures& view, const std::vector<LandmarkObservation>& pairs) const;
+  void remember(std::uint64_t frame, std::int64_t stamp_ns, bool is_keyframe, std::vector<TrackedFrame::Seen> seen = {});
+  [[nodiscard]] std::vector<TrackedFrame::Seen> seen_in(const FrameFeatures& view, const std::vector<LandmarkObservation>& pairs) const;
   [[nodiscard]] BundleOptions bundle_options() const;
   [[nodiscard]] MapEvidence evidence(std::uint32_t segment) const;
   [[nodiscard]] SlamResult result() const;
-  [[nodiscard]] Rigid3 final_pose(const TrackedView& view) const;
+  [[nodiscard]] Rigid3 final_pose(const TrackedFrame& view) const;
 
   RgbdCamera camera_;
   SlamOptions options_;
@@ -145,7 +145,7 @@ class Slam {
     Rigid3 T_reference_camera;
   } bridge_begin_;  ///< the last view that was tracked by its features
   DepthWeight depth_weight_;
-  std::vector<TrackedView> tracked_;
+  std::vector<TrackedFrame> tracked_;
   std::map<std::uint32_t, MapFit> fits_;   ///< of the segments, after finish()
   std::vector<ControlLandmark> controls_;  ///< of one segment, after adjust_to()
   std::uint32_t controlled_segment_ = 0;

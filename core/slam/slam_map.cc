@@ -20,7 +20,7 @@ bool is_before(const Observation& a, std::uint32_t keyframe) { return a.keyframe
 
 SlamMap::SlamMap(const RgbdCamera& camera, float scale_factor, int num_levels) : camera_(camera), levels_(scale_factor, num_levels) {}
 
-std::uint32_t SlamMap::add_keyframe(std::uint64_t frame, std::uint32_t segment, ViewFeatures view) {
+std::uint32_t SlamMap::add_keyframe(std::uint64_t frame, std::uint32_t segment, FrameFeatures view) {
   SlamKeyframe& keyframe = keyframes_.emplace_back();
   keyframe.frame = frame;
   keyframe.segment = segment;
@@ -31,7 +31,7 @@ std::uint32_t SlamMap::add_keyframe(std::uint64_t frame, std::uint32_t segment, 
 
 std::uint32_t SlamMap::add_landmark(Observation first) {
   const auto index = static_cast<std::uint32_t>(landmarks_.size());
-  const ViewFeatures& view = keyframes_[first.keyframe].view;
+  const FrameFeatures& view = keyframes_[first.keyframe].view;
   assert(view.depth_m[first.feature] > 0);
   landmarks_.emplace_back().position_m = view.T_map_camera * view.point_camera(first.feature);
   add_observation(index, first);

@@ -12,9 +12,9 @@
 #include "core/features/descriptor.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
+#include "core/registration/frame_features.h"
 #include "core/registration/keypoint_noise.h"
 #include "core/registration/landmark_set.h"
-#include "core/registration/view_features.h"
 
 namespace camloc {
 
@@ -41,7 +41,7 @@ struct SlamLandmark {
 struct SlamKeyframe {
   std::uint64_t frame = 0;  ///< index in the recording
   std::uint32_t segment = 0;
-  ViewFeatures view;                              ///< T_map_camera: in the frame of the segment
+  FrameFeatures view;                             ///< T_map_camera: in the frame of the segment
   std::vector<std::int32_t> landmark_of_feature;  ///< kNoLandmark where there is none
   std::uint32_t num_landmarks = 0;
 };
@@ -56,7 +56,7 @@ class SlamMap {
  public:
   SlamMap(const RgbdCamera& camera, float scale_factor, int num_levels);
 
-  std::uint32_t add_keyframe(std::uint64_t frame, std::uint32_t segment, ViewFeatures view);
+  std::uint32_t add_keyframe(std::uint64_t frame, std::uint32_t segment, FrameFeatures view);
   /// A landmark at the depth of a feature that has one.
   std::uint32_t add_landmark(Observation first);
   /// A landmark that two keyframes see, somewhere.

@@ -15,7 +15,7 @@ constexpr double kMinInlierRatio = 0.3;  // of what was found in the search wind
 constexpr double kMaxGapS = 0.5;         // a longer gap between stamps ends the prediction
 constexpr double kMinFoundDepthAgreement = 0.7, kMinFoundSpread = 0.12;
 
-double median_depth_m(const ViewFeatures& view) {
+double median_depth_m(const FrameFeatures& view) {
   std::vector<float> depths;
   for (const float z : view.depth_m) {
     if (z > 0) depths.push_back(z);
@@ -71,7 +71,7 @@ bool Tracker::is_plausible(const Registration& found, std::int64_t stamp_ns) con
 
 // A wider search is made where the one before has lost much of what the last view saw: a pattern that repeats (the fins of a
 // radiator) may agree with itself one period off, but then the rest of the image does not.
-Registration Tracker::track(const ViewFeatures& view, std::uint64_t seed) {
+Registration Tracker::track(const FrameFeatures& view, std::uint64_t seed) {
   update_local_set();
   const Rigid3 T_predicted = predict(view.stamp_ns);
   Registration best;
@@ -102,7 +102,7 @@ std::uint32_t Tracker::best_reference(const Registration& tracked) const {
   return best;
 }
 
-Registration Tracker::relocalize(const ViewFeatures& view, const PlaceIndex& places, std::uint64_t seed) {
+Registration Tracker::relocalize(const FrameFeatures& view, const PlaceIndex& places, std::uint64_t seed) {
   const std::uint32_t segment = map_->keyframe(reference_).segment;
   Registration best;
   std::uint32_t best_keyframe = 0;
@@ -126,7 +126,7 @@ Registration Tracker::relocalize(const ViewFeatures& view, const PlaceIndex& pla
   return best;
 }
 
-bool Tracker::wants_keyframe(const ViewFeatures& view, const Registration& tracked) const {
+bool Tracker::wants_keyframe(const FrameFeatures& view, const Registration& tracked) const {
   const SlamKeyframe& reference = map_->keyframe(reference_);
   const Rigid3 T_reference_camera = reference.view.T_map_camera.inverse() * tracked.T_map_camera;
   if (T_reference_camera.translation.norm() > numbers_.keyframe_distance * median_depth_m(view)) return true;

@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/registration/frame_registration.h"
 #include "core/registration/landmark_set.h"
-#include "core/registration/view_registration.h"
 #include "core/slam/loops/place_index.h"
 #include "core/slam/slam_map.h"
 #include "core/slam/slam_numbers.h"
@@ -25,10 +25,10 @@ class Tracker {
   Tracker(const SlamNumbers& numbers, SlamMap* map, PoseSolver* solver);
 
   /// Pose of the view near the last one, or not found. Adapts the reference keyframe.
-  [[nodiscard]] Registration track(const ViewFeatures& view, std::uint64_t seed);
+  [[nodiscard]] Registration track(const FrameFeatures& view, std::uint64_t seed);
   /// Pose of the view anywhere in the segment that was tracked last, by what places look like.
-  [[nodiscard]] Registration relocalize(const ViewFeatures& view, const PlaceIndex& places, std::uint64_t seed);
-  [[nodiscard]] bool wants_keyframe(const ViewFeatures& view, const Registration& tracked) const;
+  [[nodiscard]] Registration relocalize(const FrameFeatures& view, const PlaceIndex& places, std::uint64_t seed);
+  [[nodiscard]] bool wants_keyframe(const FrameFeatures& view, const Registration& tracked) const;
 
   /// The view was accepted with this pose; velocity follows.
   void accept(std::int64_t stamp_ns, const Rigid3& T_map_camera);

@@ -92,7 +92,7 @@ TEST(DenseAlignment, RefusesWhatIsNotTheSameOrFarFromThePrediction) {
   (void)scenery.error(a, a, change_of(0.3, 0, 0.2, 0, 0, 0), &found);
   EXPECT_FALSE(found.is_aligned);
   EXPECT_FALSE(scenery.aligner.align({}, scenery.renderer.see(a), {}, diagonal_covariance(0.1, 0.1)).is_aligned);
-  ViewThumbnail blind = scenery.renderer.see(a);
+  Thumbnail blind = scenery.renderer.see(a);
   std::fill(blind.depth.begin(), blind.depth.end(), std::uint16_t{0});
   EXPECT_FALSE(scenery.aligner.align(scenery.renderer.see(a), blind, {}, diagonal_covariance(0.1, 0.1)).is_aligned);
 }

@@ -24,9 +24,9 @@ class BoxRenderer {
   BoxRenderer(const RgbdCamera& camera, const Eigen::Vector3d& low, const Eigen::Vector3d& high)
       : camera_(camera), low_(low), high_(high) {}
 
-  ViewThumbnail see(const Rigid3& T_world_camera) {
-    ViewThumbnail view;
-    view.cell_px = camera_.color.width / ViewThumbnail::kColumns;
+  Thumbnail see(const Rigid3& T_world_camera) {
+    Thumbnail view;
+    view.cell_px = camera_.color.width / Thumbnail::kColumns;
     view.width = camera_.color.width / view.cell_px;
     view.height = camera_.color.height / view.cell_px;
     for (int y = 0; y < view.height; ++y) {
@@ -36,7 +36,7 @@ class BoxRenderer {
   }
 
  private:
-  void add_cell(const Rigid3& T_world_camera, int x, int y, ViewThumbnail* view) {
+  void add_cell(const Rigid3& T_world_camera, int x, int y, Thumbnail* view) {
     const Eigen::Vector2d normalized = camera_.color.undistort({(x + 0.5) * view->cell_px - 0.5, (y + 0.5) * view->cell_px - 0.5});
     const Eigen::Vector3d ray = T_world_camera.rotation * normalized.homogeneous();
     double z = 1e9;
@@ -51,9 +51,8 @@ class BoxRenderer {
     const double grey = light * (120 + contrast * texture) + grey_noise * noise(rng_);
     const double depth = z + depth_noise_m * noise(rng_);
     const bool is_in_range = z >= camera_.min_depth_m && z <= camera_.max_depth_m;
-    view->grey.push_back(
-        static_cast<std::uint16_t>(std::lround(std::clamp(grey, 0.0, 255.0) / static_cast<double>(ViewThumbnail::kGreyUnit))));
-    view->depth.push_back(is_in_range ? static_cast<std::uint16_t>(std::lround(depth / static_cast<double>(ViewThumbnail::kDepthUnitM)))
+    view->grey.push_back(static_cast<std::uint16_t>(std::lround(std::clamp(grey, 0.0, 255.0) / static_cast<double>(Thumbnail::kGreyUnit))));
+    view->depth.push_back(is_in_range ? static_cast<std::uint16_t>(std::lround(depth / static_cast<double>(Thumbnail::kDepthUnitM)))
                                       : std::uint16_t{0});
   }
 

@@ -37,28 +37,26 @@ struct Images {
   [[nodiscard]] Frame frame() const { return {0, 0, gray.view(), depth.view()}; }
 };
 
-double depth_m(const ViewThumbnail& view, int x, int y) {
-  return view.depth[view.index(x, y)] * static_cast<double>(ViewThumbnail::kDepthUnitM);
-}
+double depth_m(const Thumbnail& view, int x, int y) { return view.depth[view.index(x, y)] * static_cast<double>(Thumbnail::kDepthUnitM); }
 
-TEST(ViewThumbnail, AveragesGreyAndTakesTheNearerSurface) {
+TEST(Thumbnail, AveragesGreyAndTakesTheNearerSurface) {
   Images images;
   for (int y = 0; y < 480; ++y) {
     for (int x = 324; x < 328; ++x) images.depth.at(x, y) = 1000;  // half of a cell
     for (int x = 400; x < 416; ++x) images.depth.at(x, y) = 0;
   }
-  const ViewThumbnail view = ThumbnailMaker(registered_camera()).make(images.frame());
+  const Thumbnail view = ThumbnailMaker(registered_camera()).make(images.frame());
   EXPECT_EQ(view.width, 80);
   EXPECT_EQ(view.height, 60);
   EXPECT_EQ(view.cell_px, 8);
-  EXPECT_NEAR(view.grey[view.index(30, 7)] * static_cast<double>(ViewThumbnail::kGreyUnit), 30.5, 0.02);
+  EXPECT_NEAR(view.grey[view.index(30, 7)] * static_cast<double>(Thumbnail::kGreyUnit), 30.5, 0.02);
   EXPECT_NEAR(depth_m(view, 10, 20), 2.0, 1e-3);
   EXPECT_NEAR(depth_m(view, 40, 20), 1.0, 1e-3);
   EXPECT_EQ(view.depth[view.index(50, 20)], 0);
 }
 
 // A floor seen at a grazing angle: a mean of depths would lie behind it, one that drops the far end of a cell before it.
-TEST(ViewThumbnail, ASlantedPlaneHasTheDepthOfTheMiddleOfACell) {
+TEST(Thumbnail, ASlantedPlaneHasTheDepthOfTheMiddleOfACell) {
   RgbdCamera camera = registered_camera();
   camera.depth_unit_m = 0.0001;
   const auto plane = [&](double x, double y) { return 1.0 / (0.002 * (y - 200) + 0.0001 * x); };
@@ -69,7 +67,7 @@ TEST(ViewThumbnail, ASlantedPlaneHasTheDepthOfTheMiddleOfACell) {
       images.depth.at(x, y) = z > 0.5 && z < 5 ? static_cast<std::uint16_t>(std::lround(z / 0.0001)) : std::uint16_t{0};
     }
   }
-  const ViewThumbnail view = ThumbnailMaker(camera).make(images.frame());
+  const Thumbnail view = ThumbnailMaker(camera).make(images.frame());
   int num_checked = 0;
   for (int y = 0; y < view.height; ++y) {
     for (int x = 0; x < view.width; ++x) {
@@ -83,7 +81,7 @@ TEST(ViewThumbnail, ASlantedPlaneHasTheDepthOfTheMiddleOfACell) {
 }
 
 // The depth camera sits 10 cm to the left and has another focal length: what is near moves farther.
-TEST(ViewThumbnail, ProjectsDepthThatIsNotRegistered) {
+TEST(Thumbnail, ProjectsDepthThatIsNotRegistered) {
   RgbdCamera camera = registered_camera();
   camera.is_depth_registered = false;
   camera.depth.fx = camera.depth.fy = 585;
@@ -92,7 +90,7 @@ TEST(ViewThumbnail, ProjectsDepthThatIsNotRegistered) {
   for (int y = 0; y < 480; ++y) {
     for (int x = 300; x < 400; ++x) images.depth.at(x, y) = 1000;
   }
-  const ViewThumbnail view = ThumbnailMaker(camera).make(images.frame());
+  const Thumbnail view = ThumbnailMaker(camera).make(images.frame());
   const auto column_of = [&](double depth_x, double z) {
     return static_cast<int>(std::floor((525 * ((depth_x - 319.5) / 585 - 0.1 / z) + 320) / 8));
   };

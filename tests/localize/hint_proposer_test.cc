@@ -79,7 +79,7 @@ TEST(HintProposer, NonsenseIsIgnoredAndOldHintsAreForgotten) {
   const SampleWorld& world = SampleWorld::get();
   const LocalizerNumbers numbers;
   const Gate gate(numbers, true);
-  const ViewFeatures view;
+  const FrameFeatures view;
   HintProposer proposer({&world.map(), &world.camera(), &numbers, 1000});
   const auto count = [&](std::int64_t stamp_ns) { return proposer.propose({stamp_ns, &view, &gate}).size(); };
   EXPECT_EQ(count(0), 0U);

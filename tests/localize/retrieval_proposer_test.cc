@@ -35,10 +35,10 @@ TEST(RetrievalProposer, ProposesViewsOfThePlace) {
   const SampleWorld& world = SampleWorld::get();
   const LocalizerNumbers numbers;
   RetrievalProposer proposer({&world.map(), &world.camera(), &numbers, 1000});
-  ViewExtractor extractor(world.camera(), OrbOptions{});
+  FrameExtractor extractor(world.camera(), OrbOptions{});
   const Gate gate(numbers, true);
   for (const std::uint64_t i : {1U, 31U, 61U, 89U}) {
-    ViewFeatures view;
+    FrameFeatures view;
     const FrameBuffer frame = world.frame(i);
     extractor.extract(frame.view(), &view);
     const auto proposals = proposer.propose({0, &view, &gate});

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "core/geometry/camera.h"
-#include "core/registration/view_features.h"
+#include "core/registration/frame_features.h"
 
 namespace camloc {
 
@@ -33,7 +33,7 @@ inline Descriptor flipped(const Descriptor& original, int num_bits, std::mt19937
 }
 
 inline void add_feature(const Intrinsics& k, const Eigen::Vector2d& pixel, double depth_m, int level, const Descriptor& descriptor,
-                        ViewFeatures* view) {
+                        FrameFeatures* view) {
   Keypoint keypoint;
   keypoint.u = static_cast<float>(pixel.x());
   keypoint.v = static_cast<float>(pixel.y());

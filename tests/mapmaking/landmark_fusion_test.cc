@@ -28,10 +28,10 @@ std::vector<Point> random_points(int count, std::mt19937_64& random) {
 }
 
 /// All points as the camera sees them, with noise of pixel and depth and a few flipped bits.
-ViewFeatures see(const std::vector<Point>& points, const Rigid3& T_map_camera, double noise, std::mt19937_64& random) {
+FrameFeatures see(const std::vector<Point>& points, const Rigid3& T_map_camera, double noise, std::mt19937_64& random) {
   const Intrinsics k = test_intrinsics();
   std::normal_distribution<double> normal(0, noise);
-  ViewFeatures view;
+  FrameFeatures view;
   view.T_map_camera = T_map_camera;
   for (const Point& point : points) {
     const Eigen::Vector3d p = T_map_camera.inverse() * point.p_map;
@@ -77,7 +77,7 @@ TEST(LandmarkFusion, NeverFusesAcrossADepthDisagreement) {
   LandmarkFusion fusion(test_intrinsics(), {}, {});
   const Intrinsics k = test_intrinsics();
   for (const double depth : {2.0, 2.05, 2.3}) {  // sigma at 2 m is 2.5 cm
-    ViewFeatures view;
+    FrameFeatures view;
     add_feature(k, {320, 240}, depth, 0, point.descriptor, &view);
     fusion.add_view(view);
   }
@@ -90,7 +90,7 @@ TEST(LandmarkFusion, UnlikeFeaturesStayApart) {
   std::mt19937_64 random(14);
   LandmarkFusion fusion(test_intrinsics(), {}, {});
   for (int i = 0; i < 2; ++i) {
-    ViewFeatures view;
+    FrameFeatures view;
     add_feature(test_intrinsics(), {320, 240}, 2, 0, {{random(), random(), random(), random()}}, &view);
     fusion.add_view(view);
   }
@@ -102,7 +102,7 @@ TEST(LandmarkFusion, SameCornerOnOtherLevelsIsOneLandmark) {
   const Descriptor descriptor{{random(), random(), random(), random()}};
   LandmarkFusion fusion(test_intrinsics(), {}, {});
   for (int i = 0; i < 2; ++i) {
-    ViewFeatures view;
+    FrameFeatures view;
     for (int level = 0; level < 3; ++level)
       add_feature(test_intrinsics(), {320 + 0.4 * level, 240}, 2, level, flipped(descriptor, 10, random), &view);
     fusion.add_view(view);
@@ -136,7 +136,7 @@ TEST(LandmarkFusion, ViewsListTheirLandmarksOnce) {
 
 TEST(LandmarkFusion, FeaturesWithoutDepthAddNothing) {
   LandmarkFusion fusion(test_intrinsics(), {}, {});
-  ViewFeatures view;
+  FrameFeatures view;
   add_feature(test_intrinsics(), {320, 240}, 0, 0, {}, &view);
   fusion.add_view(view);
   fusion.add_view({});

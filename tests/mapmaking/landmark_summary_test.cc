@@ -20,7 +20,7 @@ TEST(LandmarkSummary, DescribesHowALandmarkWasSeen) {
   LandmarkFusion fusion(test_intrinsics(), {}, {});
   const Intrinsics k = test_intrinsics();
   for (const double x : {-0.4, 0.4}) {
-    ViewFeatures view;
+    FrameFeatures view;
     view.T_map_camera = pose(x, 0, 0);
     const Eigen::Vector3d p = view.T_map_camera.inverse() * Eigen::Vector3d(0, 0, 2);
     add_feature(k, k.project(p), p.z(), x < 0 ? 0 : 2, descriptor, &view);
@@ -45,7 +45,7 @@ TEST(LandmarkSummary, KeepsASecondAppearanceAndPutsTheCommonOneFirst) {
   common.bits[0] ^= (std::uint64_t{1} << 56) - 1;
   LandmarkFusion fusion(test_intrinsics(), {}, {});
   for (int i = 0; i < 8; ++i) {
-    ViewFeatures view;
+    FrameFeatures view;
     add_feature(test_intrinsics(), {320, 240}, 2, 0, flipped(i < 2 ? rare : common, 3, random), &view);
     fusion.add_view(view);
   }
@@ -66,7 +66,7 @@ TEST(LandmarkSummary, SigmaIsTheScatterOfOneObservation) {
   for (const int num_views : {100, 400}) {
     LandmarkFusion fusion(test_intrinsics(), {}, {});
     for (int i = 0; i < num_views; ++i) {
-      ViewFeatures view;
+      FrameFeatures view;
       add_feature(test_intrinsics(), {319.5, 239.5}, 2 + std::clamp(normal(random), -0.05, 0.05), 0, {}, &view);
       fusion.add_view(view);
     }

@@ -40,7 +40,7 @@ PoseConsistencyEstimate estimate_with(double error_m, double error_rad) {
   for (int i = 0; i < 120; ++i) {
     const double along = i < 60 ? 0.02 * i : 0.02 * (120 - i) + 0.15;
     const Rigid3 T_map_camera{exp_so3({0.002 * i, 0, 0.001 * i}), {along, 0.03 * (i % 5), 0}};
-    ViewFeatures view;
+    FrameFeatures view;
     for (std::size_t p = 0; p < points.size(); ++p) {
       const Eigen::Vector3d p_camera = T_map_camera.inverse() * points[p];
       Eigen::Vector2d pixel = camera.color.project(p_camera);

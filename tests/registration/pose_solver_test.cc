@@ -32,11 +32,11 @@ struct Solver {
   PoseEvidence refine(const Rigid3& T_map_camera) { return solver.refine(&landmarks, T_map_camera); }
 
   RgbdCamera camera;
-  ViewExtractor extractor{camera, OrbOptions{}};
+  FrameExtractor extractor{camera, OrbOptions{}};
   MapLandmarks landmarks;
   PoseSolver solver;
   FrameBuffer frame;
-  ViewFeatures view;
+  FrameFeatures view;
 };
 
 class PoseSolverTest : public ::testing::Test {

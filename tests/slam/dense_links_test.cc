@@ -29,11 +29,11 @@ struct KeyframesInARoom {
   /// A keyframe that is `off_m` from where it should be, in its segment.
   int add(const Rigid3& T_true, const Eigen::Vector3d& off_m, std::uint32_t segment, bool has_thumbnail = true) {
     const std::uint64_t frame = T_world_camera.size();
-    ViewFeatures view = viewer.see(frame, T_true);
+    FrameFeatures view = viewer.see(frame, T_true);
     view.T_map_camera = {T_true.rotation, T_true.translation + off_m};
     T_world_camera.push_back(T_true);
     const std::uint32_t keyframe = insert_keyframe(frame, segment, view, {}, &map);
-    return links.add_keyframe(map, keyframe, has_thumbnail ? renderer.see(T_true) : ViewThumbnail());
+    return links.add_keyframe(map, keyframe, has_thumbnail ? renderer.see(T_true) : Thumbnail());
   }
 };
 

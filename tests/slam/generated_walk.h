@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/geometry/alignment.h"
-#include "core/registration/view_features.h"
+#include "core/registration/frame_features.h"
 #include "core/slam/slam.h"
 
 namespace camloc::testing {
@@ -127,15 +127,15 @@ class Viewer {
   /// The points that the features of the last view show.
   [[nodiscard]] const std::vector<std::uint32_t>& shown() const { return shown_; }
 
-  [[nodiscard]] ViewFeatures blank(std::uint64_t frame) const {
-    ViewFeatures view;
+  [[nodiscard]] FrameFeatures blank(std::uint64_t frame) const {
+    FrameFeatures view;
     view.stamp_ns = stamp_ns(frame);
     return view;
   }
 
   /// The pose of the result is not set: it is what SLAM has to find.
-  ViewFeatures see(std::uint64_t frame, const Rigid3& T_world_camera) {
-    ViewFeatures view = blank(frame);
+  FrameFeatures see(std::uint64_t frame, const Rigid3& T_world_camera) {
+    FrameFeatures view = blank(frame);
     shown_.clear();
     const Rigid3 T_camera_world = T_world_camera.inverse();
     for (std::uint32_t i = 0; i < world_.points.size(); ++i) {
@@ -171,7 +171,7 @@ class Viewer {
     });
   }
 
-  void add_feature(std::uint32_t index, const Eigen::Vector3d& p, const Rigid3& T_camera_world, ViewFeatures* view) {
+  void add_feature(std::uint32_t index, const Eigen::Vector3d& p, const Rigid3& T_camera_world, FrameFeatures* view) {
     const WorldPoint& point = world_.points[index];
     const double level = std::log(point.reference_m / p.norm()) / std::log(1.2);
     if (level < -1.5 || level > 8.5 || chance() >= options_.seen_share) return;
@@ -211,12 +211,12 @@ class Viewer {
   }
 
   // The first of a shuffled order: an even choice.
-  void keep_some(ViewFeatures* view) {
+  void keep_some(FrameFeatures* view) {
     std::vector<std::size_t> order(view->size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[rng_() % i]);
     order.resize(std::min(order.size(), options_.max_features));
-    ViewFeatures kept = ViewFeatures{view->T_map_camera, view->stamp_ns, {}, {}, {}, {}};
+    FrameFeatures kept = FrameFeatures{view->T_map_camera, view->stamp_ns, {}, {}, {}, {}};
     std::vector<std::uint32_t> shown;
     for (const std::size_t i : order) {
       kept.features.keypoints.push_back(view->features.keypoints[i]);
@@ -242,18 +242,18 @@ class Viewer {
 /// SLAM over a walk, and what was true. Frames are numbered from 0.
 struct Walk {
   std::vector<Rigid3> T_world_camera;             ///< per frame
-  std::vector<ViewReport> reports;                ///< per frame
+  std::vector<FrameReport> reports;               ///< per frame
   std::vector<std::vector<std::uint32_t>> shown;  ///< per frame and feature: the point of the world
 };
 
 /// Changes a view before SLAM gets it.
-using Disturbance = std::function<void(std::uint64_t frame, ViewFeatures*)>;
+using Disturbance = std::function<void(std::uint64_t frame, FrameFeatures*)>;
 
 inline Walk walk_through(Viewer* viewer, const std::vector<Rigid3>& T_world_camera, Slam* slam, const Disturbance& disturb = {}) {
   Walk walk;
   walk.T_world_camera = T_world_camera;
   for (std::uint64_t frame = 0; frame < T_world_camera.size(); ++frame) {
-    ViewFeatures view = viewer->see(frame, T_world_camera[frame]);
+    FrameFeatures view = viewer->see(frame, T_world_camera[frame]);
     walk.shown.push_back(viewer->shown());
     if (disturb) disturb(frame, &view);
     walk.reports.push_back(slam->add_view(frame, view));

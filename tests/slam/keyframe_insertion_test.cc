@@ -27,7 +27,7 @@ TEST(KeyframeInsertion, TrackedLandmarksAreSeenAgainInsteadOfMadeAnew) {
   TrueKeyframes f(testing::make_room());
   f.add(looking({0, 0, 1.4}, 0));
   const Rigid3 T = looking({0.05, 0, 1.4}, 0.03);
-  ViewFeatures view = f.viewer.see(1, T);
+  FrameFeatures view = f.viewer.see(1, T);
   view.T_map_camera = T;
   LandmarkSet set = f.map.empty_landmark_set();
   const std::uint32_t first = 0;
@@ -70,7 +70,7 @@ TEST(KeyframeInsertion, WhatLiesAtAnotherDepthIsNotFused) {
   TrueKeyframes f(testing::make_room());
   f.add(looking({0, 0, 1.4}, 0));
   const Rigid3 T = looking({0.02, 0, 1.4}, 0.01);
-  ViewFeatures view = f.viewer.see(1, T);
+  FrameFeatures view = f.viewer.see(1, T);
   view.T_map_camera = T;
   for (float& z : view.depth_m) z *= 0.8F;
   const std::uint32_t second = insert_keyframe(1, 0, view, {}, &f.map);

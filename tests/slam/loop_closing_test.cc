@@ -40,7 +40,7 @@ RingRun walk_ring(bool close_loops, double depth_scale, double max_chi2 = SlamNu
   options.numbers.loop_max_chi2 = max_chi2;
   Slam slam(viewer.camera(), options);
   const auto poses = along_ring(kSideM, 1.5, 4 * kSideM + 4.5, 0.15);
-  const Walk walk = walk_through(&viewer, poses, &slam, [&](std::uint64_t frame, ViewFeatures* view) {
+  const Walk walk = walk_through(&viewer, poses, &slam, [&](std::uint64_t frame, FrameFeatures* view) {
     if (frame < kDriftBegin || frame >= kDriftEnd) return;
     const double share = static_cast<double>(frame - kDriftBegin) / (kDriftEnd - kDriftBegin);
     const double scale = 1 + (depth_scale - 1) * std::sin(std::numbers::pi * share);
@@ -176,7 +176,7 @@ TEST(LoopClosing, SegmentsThatReallyMeetAreJoined) {
   for (int i = 0; i < 40; ++i) poses.push_back(looking({4 + 0.1 * i, 0, 1.5}, 0.5));
   const std::size_t end_blank = poses.size();
   for (int i = 0; i < 75; ++i) poses.push_back(looking({8 - 0.1 * i, 0.2, 1.5}, 0.5 + 0.3 * std::sin(0.1 * i)));
-  const Walk walk = walk_through(&viewer, poses, &slam, [&](std::uint64_t frame, ViewFeatures* view) {
+  const Walk walk = walk_through(&viewer, poses, &slam, [&](std::uint64_t frame, FrameFeatures* view) {
     if (frame >= first_blank && frame < end_blank) *view = viewer.blank(frame);
   });
   const SlamResult result = slam.finish();

@@ -132,7 +132,7 @@ TEST(MapAdjustment, ControlLandmarksMoveTheMapToWhereTheyWereSurveyed) {
     control.position_m = T_site_map * landmark.position_m;
     control.sigma_m = 0.0005;
     for (const Observation& s : landmark.observations) {
-      const ViewFeatures& view = d.map.keyframe(s.keyframe).view;
+      const FrameFeatures& view = d.map.keyframe(s.keyframe).view;
       control.seen.push_back({s.keyframe, view.normalized[s.feature].x(), view.normalized[s.feature].y(), view.depth_m[s.feature], 0.5F});
     }
   }

@@ -39,11 +39,11 @@ class TexturedWall {
   }
 
   /// One feature a point, off by up to `error_px` pixels of its level.
-  ViewFeatures see(const Rigid3& T_map_camera, const std::vector<Eigen::Vector3d>& points, std::uint8_t level, double error_px,
-                   std::mt19937_64* rng) const {
+  FrameFeatures see(const Rigid3& T_map_camera, const std::vector<Eigen::Vector3d>& points, std::uint8_t level, double error_px,
+                    std::mt19937_64* rng) const {
     std::uniform_real_distribution<double> error(-error_px, error_px);
     const double scale = std::pow(1.2, level);
-    ViewFeatures view;
+    FrameFeatures view;
     view.T_map_camera = T_map_camera;
     for (const Eigen::Vector3d& point : points) {
       const Eigen::Vector2d pixel =
@@ -109,7 +109,7 @@ struct Scene {
     } stands[] = {{0, 0, -2.6, 0, 0}, {0.3, 0.1, -2.5, -0.1, 0}, {-0.3, 0.2, -2.2, 0.12, 1}, {0.1, -0.3, -3.0, 0.05, 0}};
     for (const auto& stand : stands) {
       const Rigid3 T = standing_at(stand.x, stand.y, stand.z, stand.turn_rad);
-      ViewFeatures view = wall.see(T, points, stand.level, 0.7, &rng);
+      FrameFeatures view = wall.see(T, points, stand.level, 0.7, &rng);
       view.T_map_camera.translation += Eigen::Vector3d(off(rng), off(rng), off(rng));
       if (!has_patches) view.patches.clear();
       T_map_camera_true.push_back(T);

@@ -22,15 +22,15 @@ struct TurnInARoom {
   testing::Viewer viewer{world};
   testing::BoxRenderer renderer{viewer.camera(), {-3, -2.5, 0}, {3, 2.5, 2.8}};
   std::vector<Rigid3> T_world_camera = circle(90, 0.8, 0, 3.6);
-  std::vector<ViewReport> reports;
+  std::vector<FrameReport> reports;
   Slam slam{viewer.camera(), testing::walk_options()};
 
   template <class Bare>
   SlamResult walk(bool has_thumbnails, const Bare& bare_view) {
     for (std::uint64_t frame = 0; frame < T_world_camera.size(); ++frame) {
-      ViewFeatures view = viewer.see(frame, T_world_camera[frame]);
+      FrameFeatures view = viewer.see(frame, T_world_camera[frame]);
       if (frame >= kBareBegin && frame < kBareEnd) view = bare_view(frame);
-      reports.push_back(slam.add_view(frame, view, has_thumbnails ? renderer.see(T_world_camera[frame]) : ViewThumbnail()));
+      reports.push_back(slam.add_view(frame, view, has_thumbnails ? renderer.see(T_world_camera[frame]) : Thumbnail()));
     }
     return slam.finish();
   }
@@ -45,7 +45,7 @@ TEST(SlamBridge, CarriesAcrossABareWall) {
   EXPECT_EQ(result.poses.size(), 90U);
   EXPECT_LT(trajectory_error_m(result, 0, turn.T_world_camera), 0.03);
   std::uint32_t num_bridged = 0, num_keyframes = 0;
-  for (const ViewReport& report : turn.reports) {
+  for (const FrameReport& report : turn.reports) {
     num_bridged += report.is_bridged ? 1U : 0U;
     num_keyframes += report.is_bridged && report.is_keyframe ? 1U : 0U;
   }
@@ -72,7 +72,7 @@ TEST(SlamBridge, DoesNotFollowWhatIsFullOfFeatures) {
   testing::Viewer other(elsewhere);
   (void)turn.walk(true, [&](std::uint64_t frame) {
     std::mt19937_64 rng(frame);
-    ViewFeatures view = other.see(frame, turn.T_world_camera[frame]);
+    FrameFeatures view = other.see(frame, turn.T_world_camera[frame]);
     for (Descriptor& descriptor : view.features.descriptors) descriptor = testing::random_descriptor(rng);
     return view;
   });

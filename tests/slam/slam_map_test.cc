@@ -25,8 +25,8 @@ RgbdCamera test_camera() {
 }
 
 /// Features on a grid, all at the given depth.
-ViewFeatures grid_view(std::size_t count, float depth_m, std::mt19937_64* rng) {
-  ViewFeatures view;
+FrameFeatures grid_view(std::size_t count, float depth_m, std::mt19937_64* rng) {
+  FrameFeatures view;
   for (std::size_t i = 0; i < count; ++i) {
     const auto x = static_cast<float>(i % 10) * 0.05F - 0.25F, y = static_cast<float>(i / 10) * 0.05F - 0.25F;
     view.features.keypoints.push_back({320 + 500 * x, 240 + 500 * y, 0, 1, static_cast<std::uint8_t>(i % 3)});
@@ -69,7 +69,7 @@ void expect_consistent(const SlamMap& map) {
 TEST(SlamMap, ALandmarkLiesWhereItsKeyframeSeesIt) {
   std::mt19937_64 rng(1);
   SlamMap map(test_camera(), 1.2F, 8);
-  ViewFeatures view = grid_view(30, 2.0F, &rng);
+  FrameFeatures view = grid_view(30, 2.0F, &rng);
   view.T_map_camera = {exp_so3({0.1, 0.2, 0.3}), {1, 2, 3}};
   const std::uint32_t keyframe = map.add_keyframe(7, 0, view);
   const std::uint32_t index = map.add_landmark({keyframe, 14});
@@ -184,7 +184,7 @@ TEST(SlamMap, CovisibleCountsSharedLandmarksAndOrdersThem) {
 TEST(SlamMap, TheDescriptorIsTheOneClosestToAllOthers) {
   std::mt19937_64 rng(1);
   SlamMap map(test_camera(), 1.2F, 8);
-  ViewFeatures view = grid_view(1, 2.0F, &rng);
+  FrameFeatures view = grid_view(1, 2.0F, &rng);
   const Descriptor middle = view.features.descriptors[0];
   const auto changed = [&](std::uint64_t mask, std::size_t word) {
     Descriptor d = middle;

@@ -154,7 +154,7 @@ TEST(Slam, BlankViewsAreLostAndThenTrackingIsFoundBack) {
   const World world = testing::make_room();
   Viewer viewer(world);
   Slam slam(viewer.camera(), walk_options());
-  const Walk walk = walk_through(&viewer, circle(60, 0.8, 0, 1.5), &slam, [&](std::uint64_t frame, ViewFeatures* view) {
+  const Walk walk = walk_through(&viewer, circle(60, 0.8, 0, 1.5), &slam, [&](std::uint64_t frame, FrameFeatures* view) {
     if (frame >= 25 && frame < 30) *view = viewer.blank(frame);
   });
   const SlamResult result = slam.finish();
@@ -174,7 +174,7 @@ TEST(Slam, IsFoundBackAtAPlaceOfBefore) {
   Viewer viewer(world);
   Slam slam(viewer.camera(), walk_options());
   const auto poses = joined(circle(80, 0.8, 0, 2.5), circle(20, 0.8, 0.3, 0.9));
-  const Walk walk = walk_through(&viewer, poses, &slam, [&](std::uint64_t frame, ViewFeatures* view) {
+  const Walk walk = walk_through(&viewer, poses, &slam, [&](std::uint64_t frame, FrameFeatures* view) {
     if (frame >= 76 && frame < 81) *view = viewer.blank(frame);
   });
   EXPECT_TRUE(walk.reports[81].is_found_back);
@@ -212,7 +212,7 @@ TEST(Slam, ASegmentBegunInTheSameRoomIsJoined) {
   Slam slam(viewer.camera(), walk_options());
   // Looks at one side, is covered while it turns around, and comes back to the first side.
   const auto poses = joined(circle(40, 0.8, 0, 1.2), circle(90, 0.8, 3.6, 2 * kPi + 1.0));
-  const Walk walk = walk_through(&viewer, poses, &slam, [&](std::uint64_t frame, ViewFeatures* view) {
+  const Walk walk = walk_through(&viewer, poses, &slam, [&](std::uint64_t frame, FrameFeatures* view) {
     if (frame >= 38 && frame < 42) *view = viewer.blank(frame);
   });
   const SlamResult result = slam.finish();
@@ -230,7 +230,7 @@ TEST(Slam, WithoutLoopsNothingIsJoined) {
   options.numbers.close_loops = 0;
   Slam slam(viewer.camera(), options);
   const auto poses = joined(circle(40, 0.8, 0, 1.2), circle(90, 0.8, 3.6, 2 * kPi + 1.0));
-  walk_through(&viewer, poses, &slam, [&](std::uint64_t frame, ViewFeatures* view) {
+  walk_through(&viewer, poses, &slam, [&](std::uint64_t frame, FrameFeatures* view) {
     if (frame >= 38 && frame < 42) *view = viewer.blank(frame);
   });
   EXPECT_EQ(slam.finish().segments.size(), 2U);
@@ -277,7 +277,7 @@ TEST(Slam, FarLandmarksCarryTrackingWithoutDepth) {
     SlamOptions options = walk_options();
     if (!has_far) options.numbers.far_max_distance_m = 0;
     Slam slam(viewer.camera(), options);
-    const Walk walk = walk_through(&viewer, poses, &slam, [&](std::uint64_t frame, ViewFeatures* view) {
+    const Walk walk = walk_through(&viewer, poses, &slam, [&](std::uint64_t frame, FrameFeatures* view) {
       if (frame >= 50 && frame < 85) std::fill(view->depth_m.begin(), view->depth_m.end(), 0.0F);
     });
     std::uint32_t num_far = 0;

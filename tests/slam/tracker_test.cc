@@ -61,7 +61,7 @@ TEST(Tracker, FollowsAndChangesItsReference) {
   Fixture f;
   for (std::uint64_t i = 1; i <= 40; ++i) {
     const Rigid3 truth = Fixture::pose(0.03 * static_cast<double>(i));
-    const ViewFeatures view = f.viewer.see(100 + i, truth);
+    const FrameFeatures view = f.viewer.see(100 + i, truth);
     const Registration found = f.tracker.track(view, i);
     ASSERT_TRUE(found.is_found) << i;
     EXPECT_LT(error_m(found, truth), 0.015);
@@ -86,7 +86,7 @@ TEST(Tracker, PosesFollowTheirReferenceWhenItMoves) {
 // The windows around the prediction hold the neighbouring fin where they should hold the fin.
 TEST(Tracker, ARepeatedPatternOnePeriodOffIsNotEnough) {
   Fixture f(12, room_with_radiator());
-  const ViewFeatures before = f.viewer.see(101, Fixture::pose(0));
+  const FrameFeatures before = f.viewer.see(101, Fixture::pose(0));
   const Registration at_first = f.tracker.track(before, 1);
   ASSERT_TRUE(at_first.is_found);
   f.tracker.accept(before.stamp_ns, at_first.T_map_camera);
@@ -101,9 +101,9 @@ TEST(Tracker, AnImpossibleSpeedIsRefused) {
   Fixture f;
   // The same view as 0.1 s later from a place more than half a metre away.
   const Rigid3 far = looking({-0.6, 0, 1.4}, 0);
-  const ViewFeatures at_once = f.viewer.see(101, far);
+  const FrameFeatures at_once = f.viewer.see(101, far);
   EXPECT_FALSE(f.tracker.track(at_once, 1).is_found);
-  const ViewFeatures later = f.viewer.see(105, far);
+  const FrameFeatures later = f.viewer.see(105, far);
   const Registration found = f.tracker.track(later, 1);
   ASSERT_TRUE(found.is_found);
   EXPECT_LT(error_m(found, far), 0.02);
@@ -123,7 +123,7 @@ TEST(Tracker, NothingIsFoundInEmptyAndStrangeViews) {
 TEST(Tracker, FindsBackAtAnyPlaceOfItsSegment) {
   Fixture f;
   const Rigid3 truth = Fixture::pose(1.55);
-  const ViewFeatures view = f.viewer.see(130, truth);
+  const FrameFeatures view = f.viewer.see(130, truth);
   const Registration found = f.tracker.relocalize(view, f.places, 1);
   ASSERT_TRUE(found.is_found);
   EXPECT_LT(error_m(found, truth), 0.02);
@@ -138,7 +138,7 @@ TEST(Tracker, DoesNotFindBackInAnotherSegment) {
 TEST(Tracker, WantsAKeyframeWhenTheViewIsNew) {
   Fixture f;
   const auto wants = [&](const Rigid3& T) {
-    const ViewFeatures view = f.viewer.see(101, T);
+    const FrameFeatures view = f.viewer.see(101, T);
     Registration found;
     found.is_found = true;
     found.T_map_camera = T;

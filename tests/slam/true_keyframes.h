@@ -22,7 +22,7 @@ struct TrueKeyframes {
   explicit TrueKeyframes(World w) : world(std::move(w)) {}
   std::uint32_t add(const Rigid3& T, std::uint32_t segment = 0) {
     const auto frame = static_cast<std::uint64_t>(shown.size());
-    ViewFeatures view = viewer.see(frame, T);
+    FrameFeatures view = viewer.see(frame, T);
     view.T_map_camera = T;
     shown.push_back(viewer.shown());
     return insert_keyframe(frame, segment, view, {}, &map);

@@ -52,7 +52,7 @@ Status check_arguments(const BuildArguments& arguments) {
       return {ErrorCode::kInvalid, "--trajectory: a recording that extends a map is deformed onto it; build it alone for its trajectory"};
     if (const auto extended = MapView::open(request.extend_path); !extended.is_ok()) return extended.status().with_context("--extend");
   }
-  if (request.is_resumed && !std::filesystem::exists(view_log_path(request.map_path)))
+  if (request.is_resumed && !std::filesystem::exists(frame_log_path(request.map_path)))
     return {ErrorCode::kInvalid, "--resume: there is no interrupted build of " + request.map_path + "; run it without --resume"};
   return Status::ok();
 }

@@ -30,7 +30,7 @@ struct EpipolarArguments {
 };
 
 /// Views by their time of capture; those without features yet only have a pose.
-using Views = std::map<std::int64_t, ViewFeatures>;
+using Views = std::map<std::int64_t, FrameFeatures>;
 
 struct ViewPair {
   std::int64_t estimated_ns, mapped_ns;
@@ -67,7 +67,7 @@ std::vector<ViewPair> pair_views(const EstimatedTrajectory& estimate, const Esti
 
 void add_poses(const EstimatedTrajectory& trajectory, Views* views) {
   for (const EstimatedPose& pose : trajectory.poses) {
-    ViewFeatures& view = (*views)[pose.stamp_ns];
+    FrameFeatures& view = (*views)[pose.stamp_ns];
     view.stamp_ns = pose.stamp_ns;
     view.T_map_camera = pose.T_map_camera;
   }
@@ -93,14 +93,14 @@ Status extract_features(const std::string& selection, const EpipolarArguments& a
                         Views* views) {
   auto source = open_frame_source(with_selection(arguments.sequence_path, selection));
   if (!source) return source.status();
-  ViewExtractor extractor(camera, orb);
+  FrameExtractor extractor(camera, orb);
   const std::uint64_t num_frames = source.value()->info().num_frames.value_or(0);
   TerminalObserver observer;
   std::uint64_t num_read = 0;
   const auto extract = [&](FrameBuffer& buffer) {
     const Frame frame = buffer.view();
     if (Status check = extractor.check(frame); !check) return check;
-    ViewFeatures& view = (*views)[frame.stamp_ns];
+    FrameFeatures& view = (*views)[frame.stamp_ns];
     const Rigid3 T_map_camera = view.T_map_camera;
     extractor.extract(frame, &view);
     view.T_map_camera = T_map_camera;

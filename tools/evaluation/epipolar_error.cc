@@ -37,7 +37,7 @@ EpipolarMeter::EpipolarMeter(const Intrinsics& color, const OrbOptions& orb)
       pairs_(static_cast<std::size_t>(orb.num_features)),
       ransac_(ransac_options(orb.num_features)) {}
 
-std::optional<EpipolarError> EpipolarMeter::measure(const ViewFeatures& a, const ViewFeatures& b) {
+std::optional<EpipolarError> EpipolarMeter::measure(const FrameFeatures& a, const FrameFeatures& b) {
   candidates_.clear();
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (a.depth_m[i] > 0) candidates_.add(a.features.descriptors[i], static_cast<std::int32_t>(i), a.features.keypoints[i].angle_rad);

@@ -12,7 +12,7 @@
 #include "core/features/matcher.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/pnp_ransac.h"
-#include "core/registration/view_features.h"
+#include "core/registration/frame_features.h"
 
 namespace camloc::tools {
 
@@ -28,7 +28,7 @@ class EpipolarMeter {
 
   /// Which matches are right is decided by the images and the depth of `a` alone (P3P and RANSAC), so that the given poses
   /// (T_map_camera of both views) are judged, never used. Nothing where the views share too little.
-  [[nodiscard]] std::optional<EpipolarError> measure(const ViewFeatures& a, const ViewFeatures& b);
+  [[nodiscard]] std::optional<EpipolarError> measure(const FrameFeatures& a, const FrameFeatures& b);
 
  private:
   double focal_px_;

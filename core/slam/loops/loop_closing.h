@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/optimize/pose_graph.h"
-#include "core/registration/view_registration.h"
+#include "core/registration/frame_registration.h"
 #include "core/slam/dead_reckoning.h"
 #include "core/slam/loops/loop_detection.h"
 #include "core/slam/loops/place_index.h"

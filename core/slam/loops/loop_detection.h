@@ -13,8 +13,8 @@
 #include <optional>
 #include <vector>
 
+#include "core/registration/frame_registration.h"
 #include "core/registration/landmark_set.h"
-#include "core/registration/view_registration.h"
 #include "core/slam/dead_reckoning.h"
 #include "core/slam/loops/place_index.h"
 #include "core/slam/slam_map.h"

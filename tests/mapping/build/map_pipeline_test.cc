@@ -14,8 +14,8 @@
 #include "tests/base/recording_observer.h"
 #include "tests/drivers/test_folder.h"
 #include "tests/mapping/recorded_room.h"
+#include "tools/mapping/build/frame_log.h"
 #include "tools/mapping/build/recording_tracking.h"
-#include "tools/mapping/build/view_log.h"
 
 namespace camloc::mapping {
 namespace {
@@ -54,7 +54,7 @@ TEST(MapPipeline, AWalkBecomesAMapAndATrajectory) {
   EXPECT_EQ(summary.build.num_frames, kFrames);
   EXPECT_GT(summary.build.num_landmarks, 200U);
   EXPECT_TRUE(std::filesystem::exists(folder / "room.cmap"));
-  EXPECT_FALSE(std::filesystem::exists(view_log_path(folder / "room.cmap")));
+  EXPECT_FALSE(std::filesystem::exists(frame_log_path(folder / "room.cmap")));
 
   const auto trajectory = read_tum_trajectory(folder / "walk.tum");
   ASSERT_TRUE(trajectory.is_ok()) << trajectory.status().message();
@@ -197,7 +197,7 @@ TEST(MapPipeline, WalksThatAreNoneLeaveTheOldMapAndNoLog) {
     EXPECT_EQ(status.code(), ErrorCode::kInvalid) << name;
     EXPECT_NE(status.message().find(text), std::string::npos) << status.message();
     EXPECT_EQ(bytes_of(old).size(), 3U);
-    EXPECT_FALSE(std::filesystem::exists(view_log_path(old))) << name;
+    EXPECT_FALSE(std::filesystem::exists(frame_log_path(old))) << name;
   }
 }
 

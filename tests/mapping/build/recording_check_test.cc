@@ -20,8 +20,8 @@ RgbdCamera test_camera() {
 
 std::int64_t stamp_ns(std::uint64_t frame) { return 1'000'000'000 + static_cast<std::int64_t>(frame) * 100'000'000; }
 
-ViewReport tracked(int num_inliers = 200) {
-  ViewReport report;
+FrameReport tracked(int num_inliers = 200) {
+  FrameReport report;
   report.state = ViewState::kTracked;
   report.num_inliers = num_inliers;
   return report;
@@ -89,7 +89,7 @@ TEST(RecordingCheck, FramesWithoutFeaturesSayNothingAboutDepth) {
   RecordingCheck check(test_camera());
   for (std::uint64_t i = 0; i < 40; ++i) {
     check.see_view(i, stamp_ns(i), 0, 0);
-    check.see_report(ViewReport{});
+    check.see_report(FrameReport{});
   }
   EXPECT_TRUE(check.early_verdict().is_ok());
   ASSERT_EQ(check.weak_spots().size(), 1U);
@@ -137,7 +137,7 @@ TEST(RecordingCheck, JumpsOfTheStampsAreCounted) {
 
 TEST(RecordingCheck, WeakSpotsAreStretchesWithAdvice) {
   RecordingCheck check(test_camera());
-  ViewReport lost;
+  FrameReport lost;
   for (std::uint64_t i = 0; i < 120; ++i) {
     const bool is_bare = i >= 20 && i < 30, is_dark = i >= 40 && i < 50, is_lost = i >= 60 && i < 72, is_thin = i >= 90 && i < 95;
     check.see_view(i, stamp_ns(i), is_bare ? 40 : 400, is_dark ? 10 : 300);
@@ -158,7 +158,7 @@ TEST(RecordingCheck, WeakSpotsAreStretchesWithAdvice) {
 
 TEST(RecordingCheck, TheBeginOfASegmentIsNotWeak) {
   RecordingCheck check(test_camera());
-  ViewReport begun;
+  FrameReport begun;
   begun.state = ViewState::kTracked;
   begun.has_begun_segment = true;
   check.see_view(0, stamp_ns(0), 400, 300);

@@ -9,7 +9,7 @@
 #include "tests/base/recording_observer.h"
 #include "tests/drivers/test_folder.h"
 #include "tests/mapping/recorded_room.h"
-#include "tools/mapping/build/view_log.h"
+#include "tools/mapping/build/frame_log.h"
 
 namespace camloc::mapping {
 namespace {
@@ -46,9 +46,9 @@ TEST(RecordingTracking, EveryViewIsTrackedAndLogged) {
   EXPECT_EQ(counts.num_views, 12U);
   EXPECT_EQ(counts.num_lost, 0U);
   EXPECT_EQ(end->surfaces.size(), counts.num_keyframes);
-  auto reader = ViewLogReader::open(request.log_path, recording_identity(request));
+  auto reader = FrameLogReader::open(request.log_path, recording_identity(request));
   ASSERT_TRUE(reader.is_ok());
-  LoggedView view;
+  LoggedFrame view;
   for (std::uint64_t frame = 0; frame < 12; ++frame) {
     ASSERT_TRUE(reader->next(&view).is_ok());
     EXPECT_EQ(view.frame, frame);

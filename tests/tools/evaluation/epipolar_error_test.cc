@@ -36,10 +36,10 @@ std::vector<Point> make_points(int count) {
 }
 
 /// What a camera sees of the points; it believes to be at `believed`.
-ViewFeatures see(const std::vector<Point>& points, const Rigid3& truth, const Rigid3& believed, double noise_px, std::uint64_t seed) {
+FrameFeatures see(const std::vector<Point>& points, const Rigid3& truth, const Rigid3& believed, double noise_px, std::uint64_t seed) {
   std::mt19937_64 rng(seed);
   std::normal_distribution<double> noise(0, noise_px / kFocal);
-  ViewFeatures view;
+  FrameFeatures view;
   view.T_map_camera = believed;
   for (const Point& point : points) {
     const Eigen::Vector3d p = truth.inverse() * point.p;
@@ -84,7 +84,7 @@ TEST(EpipolarError, ViewsThatShareTooLittleSayNothing) {
   const std::vector<Point> few(points.begin(), points.begin() + 30);
   EpipolarMeter meter(color(), {});
   EXPECT_FALSE(meter.measure(see(points, kA, kA, 0, 1), see(few, kB, kB, 0, 2)));
-  EXPECT_FALSE(meter.measure(ViewFeatures{}, see(points, kB, kB, 0, 2)));
+  EXPECT_FALSE(meter.measure(FrameFeatures{}, see(points, kB, kB, 0, 2)));
 }
 
 TEST(EpipolarError, TheSampsonDistanceIsThatOfTheMatchWhereTheLineIsKnown) {

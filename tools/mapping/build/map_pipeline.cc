@@ -16,9 +16,9 @@
 #include "drivers/sources.h"
 #include "tools/common/frame_reading.h"
 #include "tools/common/trajectory_file.h"
+#include "tools/mapping/build/frame_log.h"
 #include "tools/mapping/build/merge_pipeline.h"
 #include "tools/mapping/build/recording_tracking.h"
-#include "tools/mapping/build/view_log.h"
 
 namespace camloc::mapping {
 namespace {
@@ -137,7 +137,7 @@ Result<TrackedRecording> prepare_recording(const BuildRequest& request) {
     walk.survey = std::move(survey).value();
     slam.required_keyframes = frames_of(*walk.survey);
   }
-  walk.pass = {walk.frames.url,   walk.frames.num_selected, request.camera, request.map.orb, slam, view_log_path(request.map_path),
+  walk.pass = {walk.frames.url,   walk.frames.num_selected, request.camera, request.map.orb, slam, frame_log_path(request.map_path),
                request.is_resumed};
   return walk;
 }
@@ -208,10 +208,10 @@ Status map_segment(const BuildRequest& request, const TrackedRecording& walk, st
   for (const SlamPose& pose : walk.result.poses) {
     if (pose.segment == walk.result.segments[number].id) pose_of_frame.emplace(pose.frame, &pose);
   }
-  auto log = ViewLogReader::open(walk.pass.log_path, recording_identity(walk.pass));
+  auto log = FrameLogReader::open(walk.pass.log_path, recording_identity(walk.pass));
   if (!log.is_ok()) return log.status();
   MapBuilder builder(request.camera, recording_options(request));
-  LoggedView logged;
+  LoggedFrame logged;
   std::uint64_t done = 0;
   while (log->next(&logged).is_ok()) {
     const auto pose = pose_of_frame.find(logged.frame);
@@ -275,7 +275,7 @@ Status build_from_recording(const BuildRequest& request, WorkObserver& observer,
 
 }  // namespace
 
-std::string view_log_path(const std::string& map_path) { return map_path + ".views"; }
+std::string frame_log_path(const std::string& map_path) { return map_path + ".views"; }
 
 Status build_map(const BuildRequest& request, WorkObserver& observer, BuildSummary* summary) {
   const auto start = std::chrono::steady_clock::now();

@@ -37,6 +37,6 @@ struct BuildRequest {
 [[nodiscard]] Status build_map(const BuildRequest& request, WorkObserver& observer, BuildSummary* summary);
 
 /// The view log of a build, beside its map.
-[[nodiscard]] std::string view_log_path(const std::string& map_path);
+[[nodiscard]] std::string frame_log_path(const std::string& map_path);
 
 }  // namespace camloc::mapping

@@ -66,7 +66,7 @@ void RecordingCheck::see_view(std::uint64_t frame, std::int64_t stamp_ns, std::s
   ++num_seen_;
 }
 
-void RecordingCheck::see_report(const ViewReport& report) {
+void RecordingCheck::see_report(const FrameReport& report) {
   notes_.back().is_lost = report.state == ViewState::kLost;
   notes_.back().num_inliers = report.has_begun_segment ? 1000 : report.num_inliers;
 }

@@ -32,7 +32,7 @@ class RecordingCheck {
   /// The same for a view whose images are gone.
   void see_view(std::uint64_t frame, std::int64_t stamp_ns, std::size_t num_features, std::size_t num_with_depth);
   /// After tracking of the same frame.
-  void see_report(const ViewReport& report);
+  void see_report(const FrameReport& report);
 
   /// kInvalid when no map should be made of this: no depth, constant depth, a camera that never moved.
   [[nodiscard]] Status verdict(const SlamResult& result) const;

@@ -13,8 +13,8 @@
 
 #include "core/io/camera_file.h"
 #include "drivers/sources.h"
+#include "tools/mapping/build/frame_log.h"
 #include "tools/mapping/build/surface_sample.h"
-#include "tools/mapping/build/view_log.h"
 
 namespace camloc::mapping {
 namespace {
@@ -40,9 +40,9 @@ class Pass {
 
   /// Processes what an earlier pass has seen; says where its log ends.
   Status replay(std::uint64_t* log_bytes) {
-    auto reader = ViewLogReader::open(request_.log_path, recording_identity(request_));
+    auto reader = FrameLogReader::open(request_.log_path, recording_identity(request_));
     if (!reader.is_ok()) return reader.status();
-    LoggedView logged;
+    LoggedFrame logged;
     while (!observer_.should_stop() && reader->next(&logged).is_ok()) {
       check_->see_view(logged.frame, logged.view.stamp_ns, logged.view.size(), num_with_depth(logged.view));
       track(logged);
@@ -54,7 +54,7 @@ class Pass {
     return Status::ok();
   }
 
-  Status run(ViewLogWriter log) {
+  Status run(FrameLogWriter log) {
     auto source = open_frame_source(request_.url);
     if (!source.is_ok()) return source.status();
     auto counts = tools::read_frames(
@@ -74,19 +74,19 @@ class Pass {
   [[nodiscard]] RecordingEnd end() { return std::move(end_); }
 
  private:
-  static std::size_t num_with_depth(const ViewFeatures& view) {
+  static std::size_t num_with_depth(const FrameFeatures& view) {
     return static_cast<std::size_t>(std::count_if(view.depth_m.begin(), view.depth_m.end(), [](float z) { return z > 0; }));
   }
 
-  Status process(const Frame& frame, ViewLogWriter* log) {
+  Status process(const Frame& frame, FrameLogWriter* log) {
     if (frame.depth.empty()) {
       ++num_done_;
       ++end_.num_without_depth;
       return Status::ok();
     }
     if (const Status checked = extractor_.check(frame); !checked.is_ok()) return checked;
-    LoggedView logged{frame.sequence, extractor_.extract_with_patches(frame), thumbnails_.make(frame),
-                      sample_surface(request_.camera, frame.depth)};
+    LoggedFrame logged{frame.sequence, extractor_.extract_with_patches(frame), thumbnails_.make(frame),
+                       sample_surface(request_.camera, frame.depth)};
     check_->see_frame(frame, logged.view.size(), num_with_depth(logged.view));
     if (const Status usable = check_->early_verdict(); !usable.is_ok()) return usable;
     if (!track(logged)) logged.view.patches.clear();  // only those of keyframes are asked for again
@@ -94,8 +94,8 @@ class Pass {
   }
 
   /// Whether the view has become a keyframe.
-  bool track(const LoggedView& logged) {
-    const ViewReport report = slam_->add_view(logged.frame, logged.view, logged.thumbnail);
+  bool track(const LoggedFrame& logged) {
+    const FrameReport report = slam_->add_view(logged.frame, logged.view, logged.thumbnail);
     check_->see_report(report);
     if (report.is_keyframe) end_.surfaces.push_back({logged.frame, logged.surface_m});
     observer_.show("frame", ++num_done_, request_.num_frames, note_of(slam_->counts()));
@@ -106,7 +106,7 @@ class Pass {
   Slam* slam_;
   RecordingCheck* check_;
   WorkObserver& observer_;
-  ViewExtractor extractor_;
+  FrameExtractor extractor_;
   ThumbnailMaker thumbnails_;
   RecordingEnd end_;
   std::uint64_t num_done_ = 0, last_frame_ = 0;
@@ -126,8 +126,8 @@ Result<RecordingEnd> track_recording(const TrackingRequest& request, Slam* slam,
     if (const Status replayed = pass.replay(&log_bytes); !replayed.is_ok()) return replayed;
     if (pass.is_interrupted()) return pass.end();  // the rest of the log is for the next time
   }
-  auto log = request.is_resumed ? ViewLogWriter::append(request.log_path, log_bytes)
-                                : ViewLogWriter::create(request.log_path, recording_identity(request));
+  auto log = request.is_resumed ? FrameLogWriter::append(request.log_path, log_bytes)
+                                : FrameLogWriter::create(request.log_path, recording_identity(request));
   if (!log.is_ok()) return log.status();
   if (const Status done = pass.run(std::move(log).value()); !done.is_ok()) {
     // What is wrong with the recording stays wrong; a full disk does not.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // One view against the landmarks of a generated room: the true pose with and without a prediction, none where there is none.
-#include "core/registration/view_registration.h"
+#include "core/registration/frame_registration.h"
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ struct SeenRoom {
     std::vector<std::uint32_t> keyframes;
     for (std::uint64_t k = 0; k < 4; ++k) {
       const Rigid3 T = looking({0.1 * static_cast<double>(k), 0, 1.4}, 0.15 * static_cast<double>(k) - 0.2);
-      ViewFeatures view = viewer.see(k, T);
+      FrameFeatures view = viewer.see(k, T);
       view.T_map_camera = T;
       keyframes.push_back(insert_keyframe(k, 0, view, {}, &map));
     }
@@ -54,7 +54,7 @@ void expect_near_truth(const Registration& found) {
 
 TEST(ViewRegistration, FindsThePoseWithAPrediction) {
   SeenRoom f;
-  const ViewFeatures view = f.viewer.see(10, kTruth);
+  const FrameFeatures view = f.viewer.see(10, kTruth);
   const Rigid3 predicted{kTruth.rotation * exp_so3({0.01, -0.012, 0.005}), kTruth.translation + Eigen::Vector3d(0.03, -0.02, 0.02)};
   expect_near_truth(register_near(view, predicted, 14, 1, &f.landmarks, &f.solver));
 }
@@ -66,7 +66,7 @@ TEST(ViewRegistration, FindsThePoseFromDescriptorsAlone) {
 
 TEST(ViewRegistration, InliersShowTheLandmarksTheyName) {
   SeenRoom f;
-  const ViewFeatures view = f.viewer.see(10, kTruth);
+  const FrameFeatures view = f.viewer.see(10, kTruth);
   const Registration found = register_anywhere(view, 1, &f.landmarks, &f.solver);
   std::size_t num_right = 0;
   for (const LandmarkObservation& pair : found.inliers) {
@@ -78,7 +78,7 @@ TEST(ViewRegistration, InliersShowTheLandmarksTheyName) {
 
 TEST(ViewRegistration, AWrongPredictionIsRefusedAndNotFollowed) {
   SeenRoom f;
-  const ViewFeatures view = f.viewer.see(10, kTruth);
+  const FrameFeatures view = f.viewer.see(10, kTruth);
   const Registration found = register_near(view, looking({0.1, 0, 1.4}, 0.9), 14, 1, &f.landmarks, &f.solver);
   EXPECT_FALSE(found.is_found);
   EXPECT_TRUE(found.inliers.empty());
@@ -89,11 +89,11 @@ TEST(ViewRegistration, NonsenseIsRefused) {
   // Another room, empty views, landmarks of nothing.
   const World other = testing::make_room(50);
   Viewer elsewhere(other);
-  const ViewFeatures strange = elsewhere.see(10, kTruth), view = f.viewer.see(10, kTruth);
+  const FrameFeatures strange = elsewhere.see(10, kTruth), view = f.viewer.see(10, kTruth);
   EXPECT_FALSE(register_near(strange, kTruth, 14, 1, &f.landmarks, &f.solver).is_found);
   EXPECT_FALSE(register_anywhere(strange, 1, &f.landmarks, &f.solver).is_found);
-  EXPECT_FALSE(register_near(ViewFeatures{}, kTruth, 14, 1, &f.landmarks, &f.solver).is_found);
-  EXPECT_FALSE(register_anywhere(ViewFeatures{}, 1, &f.landmarks, &f.solver).is_found);
+  EXPECT_FALSE(register_near(FrameFeatures{}, kTruth, 14, 1, &f.landmarks, &f.solver).is_found);
+  EXPECT_FALSE(register_anywhere(FrameFeatures{}, 1, &f.landmarks, &f.solver).is_found);
   LandmarkSet nothing = f.map.empty_landmark_set();
   f.map.collect_landmarks({}, 100, &nothing);
   EXPECT_FALSE(register_near(view, kTruth, 14, 1, &nothing, &f.solver).is_found);
@@ -105,7 +105,7 @@ TEST(ViewRegistration, DepthMakesThePoseBetter) {
   PoseSolver without(f.viewer.camera(), f.map.levels(), mapping_solver_options(600, false));
   double with_m = 0, without_m = 0;
   for (std::uint64_t i = 0; i < 25; ++i) {
-    const ViewFeatures view = f.viewer.see(10 + i, kTruth);
+    const FrameFeatures view = f.viewer.see(10 + i, kTruth);
     with_m += (register_near(view, kTruth, 14, i, &f.landmarks, &f.solver).T_map_camera.translation - kTruth.translation).norm();
     without_m += (register_near(view, kTruth, 14, i, &f.landmarks, &without).T_map_camera.translation - kTruth.translation).norm();
   }
@@ -114,7 +114,7 @@ TEST(ViewRegistration, DepthMakesThePoseBetter) {
 
 TEST(ViewRegistration, TheSameInputGivesTheSameBits) {
   SeenRoom f, g;
-  const ViewFeatures view = f.viewer.see(10, kTruth);
+  const FrameFeatures view = f.viewer.see(10, kTruth);
   (void)register_anywhere(g.viewer.see(11, looking({0, 0, 1.4}, -0.2)), 9, &g.landmarks, &g.solver);  // what came before does not matter
   const Registration a = register_anywhere(view, 3, &f.landmarks, &f.solver), b = register_anywhere(view, 3, &g.landmarks, &g.solver);
   EXPECT_EQ(a.T_map_camera.translation, b.T_map_camera.translation);
@@ -124,7 +124,7 @@ TEST(ViewRegistration, TheSameInputGivesTheSameBits) {
 
 TEST(ViewRegistration, WrongDepthsLowerTheAgreement) {
   SeenRoom f;
-  ViewFeatures view = f.viewer.see(10, kTruth);
+  FrameFeatures view = f.viewer.see(10, kTruth);
   for (std::size_t i = 0; i < view.size(); i += 2) view.depth_m[i] *= 0.7F;
   const Registration found = register_anywhere(view, 1, &f.landmarks, &f.solver);
   ASSERT_TRUE(found.is_found);

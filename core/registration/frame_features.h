@@ -21,7 +21,7 @@
 namespace camloc {
 
 /// Features of one frame. All vectors have the same length, but for `patches`, which may be empty.
-struct ViewFeatures {
+struct FrameFeatures {
   Rigid3 T_map_camera;
   std::int64_t stamp_ns = 0;
   Features features;
@@ -49,19 +49,19 @@ struct MeasuredDepth {
 };
 
 /// Makes them of frames. Not thread-safe.
-class ViewExtractor {
+class FrameExtractor {
  public:
   /// Without `use_depth` the depth image is not looked at.
-  ViewExtractor(const RgbdCamera& camera, const OrbOptions& orb, bool use_depth = true);
+  FrameExtractor(const RgbdCamera& camera, const OrbOptions& orb, bool use_depth = true);
 
   /// kInvalid when an image size does not fit the camera or there is no depth image; the message names the frame.
   [[nodiscard]] Status check(const Frame& frame) const;
   /// Is there an image, of the camera's size?
   [[nodiscard]] bool has_image(const Frame& frame) const;
   /// Features of a frame that has_image(), with an unset pose. Allocates nothing where `view` has the capacity.
-  void extract(const Frame& frame, ViewFeatures* view);
+  void extract(const Frame& frame, FrameFeatures* view);
   /// The same with the pixels around each feature.
-  [[nodiscard]] ViewFeatures extract_with_patches(const Frame& frame);
+  [[nodiscard]] FrameFeatures extract_with_patches(const Frame& frame);
   [[nodiscard]] MeasuredDepth depth_of(const Frame& frame) const;
 
  private:

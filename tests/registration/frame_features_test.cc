@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A frame becomes a view: features, their rays and depths; frames that do not fit the camera are refused.
-#include "core/registration/view_features.h"
+#include "core/registration/frame_features.h"
 
 #include <gtest/gtest.h>
 
@@ -44,12 +44,12 @@ FrameBuffer test_frame() {
   return frame;
 }
 
-TEST(ViewFeatures, RaysAndDepthsBelongToTheirKeypoints) {
+TEST(FrameFeatures, RaysAndDepthsBelongToTheirKeypoints) {
   const RgbdCamera camera = test_camera();
-  ViewExtractor extractor(camera, OrbOptions{.num_features = 500});
+  FrameExtractor extractor(camera, OrbOptions{.num_features = 500});
   const FrameBuffer frame = test_frame();
   ASSERT_TRUE(extractor.check(frame.view()).is_ok());
-  ViewFeatures view;
+  FrameFeatures view;
   extractor.extract(frame.view(), &view);
   ASSERT_GE(view.size(), 200U);
   EXPECT_LE(view.size(), 500U);
@@ -76,18 +76,18 @@ TEST(ViewFeatures, RaysAndDepthsBelongToTheirKeypoints) {
   EXPECT_GT(num_with_depth, view.size() / 2);
 }
 
-TEST(ViewFeatures, TheSameFrameGivesTheSameView) {
-  ViewExtractor extractor(test_camera(), OrbOptions{.num_features = 300});
+TEST(FrameFeatures, TheSameFrameGivesTheSameView) {
+  FrameExtractor extractor(test_camera(), OrbOptions{.num_features = 300});
   const FrameBuffer frame = test_frame();
-  ViewFeatures a;
+  FrameFeatures a;
   extractor.extract(frame.view()), b = extractor.extract(frame.view(), &a);
   EXPECT_EQ(a.features.descriptors, b.features.descriptors);
   EXPECT_EQ(a.normalized, b.normalized);
   EXPECT_EQ(a.depth_m, b.depth_m);
 }
 
-TEST(ViewFeatures, FramesThatDoNotFitAreRefusedByName) {
-  const ViewExtractor extractor(test_camera(), OrbOptions{});
+TEST(FrameFeatures, FramesThatDoNotFitAreRefusedByName) {
+  const FrameExtractor extractor(test_camera(), OrbOptions{});
   const auto expect_refused = [&](const FrameBuffer& frame, const std::string& text) {
     const Status status = extractor.check(frame.view());
     EXPECT_EQ(status.code(), ErrorCode::kInvalid);
@@ -108,23 +108,23 @@ TEST(ViewFeatures, FramesThatDoNotFitAreRefusedByName) {
   expect_refused(frame, "0x0");
 }
 
-TEST(ViewFeatures, AnImageOfNothingHasNoFeatures) {
-  ViewExtractor extractor(test_camera(), OrbOptions{});
+TEST(FrameFeatures, AnImageOfNothingHasNoFeatures) {
+  FrameExtractor extractor(test_camera(), OrbOptions{});
   FrameBuffer frame = test_frame();
   std::fill(frame.gray.pixels.begin(), frame.gray.pixels.end(), std::uint8_t{90});
-  ViewFeatures view;
+  FrameFeatures view;
   extractor.extract(frame.view(), &view);
   EXPECT_EQ(view.size(), 0U);
   EXPECT_TRUE(view.normalized.empty() && view.depth_m.empty());
 }
 
-TEST(ViewFeatures, DepthMayBeAbsentOrUnwanted) {
+TEST(FrameFeatures, DepthMayBeAbsentOrUnwanted) {
   const FrameBuffer buffer = test_frame();
-  ViewExtractor with(test_camera(), OrbOptions{}), without(test_camera(), OrbOptions{}, false);
+  FrameExtractor with(test_camera(), OrbOptions{}), without(test_camera(), OrbOptions{}, false);
   Frame bare = buffer.view();
   bare.depth = {};
   for (const auto& [extractor, frame] : {std::pair{&with, bare}, std::pair{&without, buffer.view()}}) {
-    ViewFeatures view;
+    FrameFeatures view;
     extractor->extract(frame, &view);
     EXPECT_GT(view.size(), 100U);
     for (const float z : view.depth_m) ASSERT_EQ(z, 0);
@@ -133,9 +133,9 @@ TEST(ViewFeatures, DepthMayBeAbsentOrUnwanted) {
   EXPECT_NEAR(with.depth_of(buffer.view()).at(160, 120), 1.16, 0.01);
 }
 
-TEST(ViewFeatures, AnImageOfTheRightSizeIsAsked) {
+TEST(FrameFeatures, AnImageOfTheRightSizeIsAsked) {
   const FrameBuffer buffer = test_frame();
-  const ViewExtractor extractor(test_camera(), OrbOptions{});
+  const FrameExtractor extractor(test_camera(), OrbOptions{});
   EXPECT_TRUE(extractor.has_image(buffer.view()));
   for (int fault = 0; fault < 4; ++fault) {
     Frame frame = buffer.view();
@@ -147,12 +147,12 @@ TEST(ViewFeatures, AnImageOfTheRightSizeIsAsked) {
   }
 }
 
-TEST(ViewFeatures, AViewThatIsUsedAgainKeepsNothingOfTheLast) {
-  ViewExtractor extractor(test_camera(), OrbOptions{.num_features = 300});
+TEST(FrameFeatures, AViewThatIsUsedAgainKeepsNothingOfTheLast) {
+  FrameExtractor extractor(test_camera(), OrbOptions{.num_features = 300});
   const FrameBuffer buffer = test_frame();
   FrameBuffer black = buffer;
   std::fill(black.gray.pixels.begin(), black.gray.pixels.end(), std::uint8_t{0});
-  ViewFeatures view = extractor.extract_with_patches(buffer.view());
+  FrameFeatures view = extractor.extract_with_patches(buffer.view());
   view.T_map_camera.translation.x() = 3;
   extractor.extract(black.view(), &view);
   EXPECT_EQ(view.size(), 0U);

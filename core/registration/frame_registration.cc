@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/registration/view_registration.h"
+#include "core/registration/frame_registration.h"
 
 namespace camloc {
 namespace {
@@ -32,14 +32,14 @@ PoseSolverOptions mapping_solver_options(int max_features, bool use_depth) {
   return options;
 }
 
-Registration register_near(const ViewFeatures& view, const Rigid3& T_map_camera_predicted, float radius_px, std::uint64_t seed,
+Registration register_near(const FrameFeatures& view, const Rigid3& T_map_camera_predicted, float radius_px, std::uint64_t seed,
                            LandmarkSet* landmarks, PoseSolver* solver) {
   solver->begin(view);
   const auto matches = solver->search_by_projection(landmarks, T_map_camera_predicted, radius_px);
   return registered(solver->solve_and_refine(landmarks, matches, seed), *landmarks, *solver);
 }
 
-Registration register_anywhere(const ViewFeatures& view, std::uint64_t seed, LandmarkSet* landmarks, PoseSolver* solver) {
+Registration register_anywhere(const FrameFeatures& view, std::uint64_t seed, LandmarkSet* landmarks, PoseSolver* solver) {
   solver->begin(view);
   solver->candidates().clear();
   landmarks->append_candidates(&solver->candidates());

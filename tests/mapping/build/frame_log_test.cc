@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Views come back from the log bit for bit; whatever happens to the file, what is read was written.
-#include "tools/mapping/build/view_log.h"
+#include "tools/mapping/build/frame_log.h"
 
 #include <gtest/gtest.h>
 
@@ -16,10 +16,10 @@ namespace {
 
 constexpr std::uint64_t kIdentity = 0x1234567890ABCDEF;
 
-LoggedView random_view(std::uint64_t frame, std::size_t num_features, std::size_t num_surface) {
+LoggedFrame random_view(std::uint64_t frame, std::size_t num_features, std::size_t num_surface) {
   std::mt19937_64 rng(frame + 1);
   const auto number = [&] { return std::uniform_real_distribution<float>(-5, 700)(rng); };
-  LoggedView logged;
+  LoggedFrame logged;
   logged.frame = frame;
   logged.view.stamp_ns = 1'000'000'000'000 + static_cast<std::int64_t>(frame * 33'333'333);
   for (std::size_t i = 0; i < num_features; ++i) {
@@ -45,11 +45,11 @@ LoggedView random_view(std::uint64_t frame, std::size_t num_features, std::size_
   return logged;
 }
 
-std::vector<LoggedView> random_views() {
+std::vector<LoggedFrame> random_views() {
   return {random_view(0, 30, 12), random_view(3, 0, 5), random_view(4, 50, 0), random_view(5, 0, 0), random_view(9, 20, 20)};
 }
 
-void expect_equal(const LoggedView& a, const LoggedView& b) {
+void expect_equal(const LoggedFrame& a, const LoggedFrame& b) {
   EXPECT_EQ(a.frame, b.frame);
   EXPECT_EQ(a.view.stamp_ns, b.view.stamp_ns);
   ASSERT_EQ(a.view.size(), b.view.size());
@@ -69,19 +69,19 @@ void expect_equal(const LoggedView& a, const LoggedView& b) {
   }
 }
 
-void write_log(const std::string& path, const std::vector<LoggedView>& views) {
-  auto writer = ViewLogWriter::create(path, kIdentity);
+void write_log(const std::string& path, const std::vector<LoggedFrame>& views) {
+  auto writer = FrameLogWriter::create(path, kIdentity);
   ASSERT_TRUE(writer.is_ok()) << writer.status().message();
-  for (const LoggedView& view : views) ASSERT_TRUE(writer->add(view).is_ok());
+  for (const LoggedFrame& view : views) ASSERT_TRUE(writer->add(view).is_ok());
   ASSERT_TRUE(writer->flush().is_ok());
 }
 
 /// How many views come out; all must be those that went in.
-std::size_t num_readable(const std::string& path, const std::vector<LoggedView>& written, std::uint64_t* size_bytes = nullptr) {
-  auto reader = ViewLogReader::open(path, kIdentity);
+std::size_t num_readable(const std::string& path, const std::vector<LoggedFrame>& written, std::uint64_t* size_bytes = nullptr) {
+  auto reader = FrameLogReader::open(path, kIdentity);
   if (!reader.is_ok()) return 0;
   std::size_t count = 0;
-  LoggedView view;
+  LoggedFrame view;
   Status status = Status::ok();
   while ((status = reader->next(&view)).is_ok()) {
     if (count == written.size()) {
@@ -149,14 +149,14 @@ TEST(ViewLog, ASizeFromADamagedHeaderIsNotBelieved) {
 TEST(ViewLog, AnotherBuildsLogIsRefused) {
   const TestFolder folder;
   write_log(folder / "log", random_views());
-  const auto other = ViewLogReader::open(folder / "log", kIdentity + 1);
+  const auto other = FrameLogReader::open(folder / "log", kIdentity + 1);
   ASSERT_FALSE(other.is_ok());
   EXPECT_EQ(other.status().code(), ErrorCode::kInvalid);
   EXPECT_NE(other.status().message().find("another recording"), std::string::npos);
-  EXPECT_EQ(ViewLogReader::open(folder / "none", kIdentity).status().code(), ErrorCode::kNotFound);
+  EXPECT_EQ(FrameLogReader::open(folder / "none", kIdentity).status().code(), ErrorCode::kNotFound);
   for (const std::string& bytes : {std::string(), std::string("hello"), std::string(64, '\0'), std::string(200, 'x')}) {
     folder.write("foreign", bytes);
-    EXPECT_EQ(ViewLogReader::open(folder / "foreign", kIdentity).status().code(), ErrorCode::kCorrupt);
+    EXPECT_EQ(FrameLogReader::open(folder / "foreign", kIdentity).status().code(), ErrorCode::kCorrupt);
   }
 }
 
@@ -169,7 +169,7 @@ TEST(ViewLog, AppendingGoesOnAfterACut) {
     folder.write("cut", {whole.begin(), whole.end() - static_cast<std::ptrdiff_t>(cut)});
     std::uint64_t size_bytes = 0;
     const std::size_t count = num_readable(folder / "cut", views, &size_bytes);
-    auto writer = ViewLogWriter::append(folder / "cut", size_bytes);
+    auto writer = FrameLogWriter::append(folder / "cut", size_bytes);
     ASSERT_TRUE(writer.is_ok());
     for (std::size_t i = count; i < views.size(); ++i) ASSERT_TRUE(writer->add(views[i]).is_ok());
     ASSERT_TRUE(writer->flush().is_ok());
@@ -186,12 +186,12 @@ TEST(ViewLog, CreatingReplacesAnOldLog) {
 
 TEST(ViewLog, WhatCannotBeWrittenIsAnErrorWithThePath) {
   const TestFolder folder;
-  const auto writer = ViewLogWriter::create(folder / "no/log", kIdentity);
+  const auto writer = FrameLogWriter::create(folder / "no/log", kIdentity);
   ASSERT_FALSE(writer.is_ok());
   EXPECT_EQ(writer.status().code(), ErrorCode::kIo);
   EXPECT_NE(writer.status().message().find("no/log"), std::string::npos);
-  EXPECT_FALSE(ViewLogWriter::append(folder / "no/log", 64).is_ok());
-  auto full = ViewLogWriter::create("/dev/full", kIdentity);
+  EXPECT_FALSE(FrameLogWriter::append(folder / "no/log", 64).is_ok());
+  auto full = FrameLogWriter::create("/dev/full", kIdentity);
   ASSERT_TRUE(full.is_ok());
   Status status = full->add(random_view(0, 5000, 100));
   if (status.is_ok()) status = full->flush();

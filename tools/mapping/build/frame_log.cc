@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Every record is checked before it is believed: sizes against what is left of the file, then the hash over header and arrays.
-#include "tools/mapping/build/view_log.h"
+#include "tools/mapping/build/frame_log.h"
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -76,8 +76,8 @@ Status io_error(const std::string& path, const std::string& what) {
 
 }  // namespace
 
-Result<ViewLogWriter> ViewLogWriter::create(const std::string& path, std::uint64_t identity) {
-  ViewLogWriter writer;
+Result<FrameLogWriter> FrameLogWriter::create(const std::string& path, std::uint64_t identity) {
+  FrameLogWriter writer;
   writer.path_ = path;
   errno = 0;
   writer.file_.open(path, std::ios::binary | std::ios::trunc);
@@ -88,8 +88,8 @@ Result<ViewLogWriter> ViewLogWriter::create(const std::string& path, std::uint64
   return writer;
 }
 
-Result<ViewLogWriter> ViewLogWriter::append(const std::string& path, std::uint64_t size_bytes) {
-  ViewLogWriter writer;
+Result<FrameLogWriter> FrameLogWriter::append(const std::string& path, std::uint64_t size_bytes) {
+  FrameLogWriter writer;
   writer.path_ = path;
   std::error_code error;
   std::filesystem::resize_file(path, size_bytes, error);
@@ -100,8 +100,8 @@ Result<ViewLogWriter> ViewLogWriter::append(const std::string& path, std::uint64
   return writer;
 }
 
-Status ViewLogWriter::add(const LoggedView& logged) {
-  const ViewFeatures& view = logged.view;
+Status FrameLogWriter::add(const LoggedFrame& logged) {
+  const FrameFeatures& view = logged.view;
   std::vector<PackedKeypoint> keypoints;
   keypoints.reserve(view.size());
   for (const Keypoint& k : view.features.keypoints) keypoints.push_back({k.u, k.v, k.angle_rad, k.response, k.level});
@@ -130,14 +130,14 @@ Status ViewLogWriter::add(const LoggedView& logged) {
   return file_ ? Status::ok() : io_error(path_, "cannot be written; is the disk full?");
 }
 
-Status ViewLogWriter::flush() {
+Status FrameLogWriter::flush() {
   errno = 0;
   file_.flush();
   return file_ ? Status::ok() : io_error(path_, "cannot be written; is the disk full?");
 }
 
-Result<ViewLogReader> ViewLogReader::open(const std::string& path, std::uint64_t identity) {
-  ViewLogReader reader;
+Result<FrameLogReader> FrameLogReader::open(const std::string& path, std::uint64_t identity) {
+  FrameLogReader reader;
   reader.path_ = path;
   std::error_code error;
   reader.file_bytes_ = std::filesystem::file_size(path, error);
@@ -153,7 +153,7 @@ Result<ViewLogReader> ViewLogReader::open(const std::string& path, std::uint64_t
   return reader;
 }
 
-Status ViewLogReader::next(LoggedView* logged) {
+Status FrameLogReader::next(LoggedFrame* logged) {
   const Status end(ErrorCode::kEnd, path_ + ": no more views");
   RecordHeader header;
   if (position_ + sizeof header > file_bytes_) return end;
@@ -173,7 +173,7 @@ Status ViewLogReader::next(LoggedView* logged) {
   position_ += sizeof header + size;
 
   std::vector<PackedKeypoint> keypoints;
-  ViewFeatures& view = logged->view;
+  FrameFeatures& view = logged->view;
   const char* from = get(bytes_.data(), header.num_features, &keypoints);
   from = get(from, header.num_features, &view.features.descriptors);
   from = get(from, header.num_features, &view.normalized);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/registration/view_features.h"
+#include "core/registration/frame_features.h"
 
 #include <string>
 
@@ -11,7 +11,7 @@ std::string size_text(int width, int height) { return std::to_string(width) + "x
 
 }  // namespace
 
-void ViewFeatures::clear() {
+void FrameFeatures::clear() {
   T_map_camera = Rigid3{};
   features.keypoints.clear();
   features.descriptors.clear();
@@ -20,21 +20,21 @@ void ViewFeatures::clear() {
   patches.clear();
 }
 
-void ViewFeatures::reserve(std::size_t num_features) {
+void FrameFeatures::reserve(std::size_t num_features) {
   features.keypoints.reserve(num_features);
   features.descriptors.reserve(num_features);
   normalized.reserve(num_features);
   depth_m.reserve(num_features);
 }
 
-ViewExtractor::ViewExtractor(const RgbdCamera& camera, const OrbOptions& orb, bool use_depth)
+FrameExtractor::FrameExtractor(const RgbdCamera& camera, const OrbOptions& orb, bool use_depth)
     : camera_(camera),
       use_depth_(use_depth),
       extractor_(camera.color.width, camera.color.height, orb),
       rays_(camera.color),
       depth_lookup_(camera) {}
 
-Status ViewExtractor::check(const Frame& frame) const {
+Status FrameExtractor::check(const Frame& frame) const {
   const std::string what = "frame " + std::to_string(frame.sequence);
   if (!has_image(frame)) {
     return {ErrorCode::kInvalid, what + ": colour image is " + size_text(frame.gray.width, frame.gray.height) + " but camera '" +
@@ -48,15 +48,15 @@ Status ViewExtractor::check(const Frame& frame) const {
   return Status::ok();
 }
 
-bool ViewExtractor::has_image(const Frame& frame) const {
+bool FrameExtractor::has_image(const Frame& frame) const {
   return !frame.gray.empty() && frame.gray.width == camera_.color.width && frame.gray.height == camera_.color.height;
 }
 
-MeasuredDepth ViewExtractor::depth_of(const Frame& frame) const {
+MeasuredDepth FrameExtractor::depth_of(const Frame& frame) const {
   return !use_depth_ || frame.depth.empty() ? MeasuredDepth{} : MeasuredDepth{&depth_lookup_, frame.depth};
 }
 
-void ViewExtractor::extract(const Frame& frame, ViewFeatures* view) {
+void FrameExtractor::extract(const Frame& frame, FrameFeatures* view) {
   view->clear();
   view->stamp_ns = frame.stamp_ns;
   view->features = extractor_.extract(frame.gray);
@@ -67,8 +67,8 @@ void ViewExtractor::extract(const Frame& frame, ViewFeatures* view) {
   }
 }
 
-ViewFeatures ViewExtractor::extract_with_patches(const Frame& frame) {
-  ViewFeatures view;
+FrameFeatures FrameExtractor::extract_with_patches(const Frame& frame) {
+  FrameFeatures view;
   extract(frame, &view);
   extractor_.copy_patches(&view.patches);
   return view;

@@ -22,10 +22,10 @@ struct Registration : PoseEvidence {
 [[nodiscard]] PoseSolverOptions mapping_solver_options(int max_features, bool use_depth = true);
 
 /// Looks for landmarks within `radius_px` of where a camera at `T_map_camera_predicted` would see them.
-[[nodiscard]] Registration register_near(const ViewFeatures& view, const Rigid3& T_map_camera_predicted, float radius_px,
+[[nodiscard]] Registration register_near(const FrameFeatures& view, const Rigid3& T_map_camera_predicted, float radius_px,
                                          std::uint64_t seed, LandmarkSet* landmarks, PoseSolver* solver);
 /// From descriptors alone, then guided by what was found.
-[[nodiscard]] Registration register_anywhere(const ViewFeatures& view, std::uint64_t seed, LandmarkSet* landmarks, PoseSolver* solver);
+[[nodiscard]] Registration register_anywhere(const FrameFeatures& view, std::uint64_t seed, LandmarkSet* landmarks, PoseSolver* solver);
 
 /// When a registration to a place far back in time is believed: looks alone are not enough, buildings repeat themselves.
 struct PlaceLimits {

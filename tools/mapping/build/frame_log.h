@@ -16,48 +16,48 @@
 
 #include "core/base/result.h"
 #include "core/dense/thumbnail.h"
-#include "core/registration/view_features.h"
+#include "core/registration/frame_features.h"
 
 namespace camloc::mapping {
 
-struct LoggedView {
+struct LoggedFrame {
   std::uint64_t frame = 0;                 ///< index in the recording
-  ViewFeatures view;                       ///< the pose is not kept; the patches are where there are some
-  ViewThumbnail thumbnail;                 ///< may be empty
+  FrameFeatures view;                      ///< the pose is not kept; the patches are where there are some
+  Thumbnail thumbnail;                     ///< may be empty
   std::vector<Eigen::Vector3f> surface_m;  ///< coarse sample of what the depth camera saw, in the camera frame
 };
 
 /// Appends views. Not thread-safe.
-class ViewLogWriter {
+class FrameLogWriter {
  public:
   /// A new log; an old one at the path is replaced. `identity` names recording, camera and options: a log is only good for
   /// the build that wrote it.
-  static Result<ViewLogWriter> create(const std::string& path, std::uint64_t identity);
+  static Result<FrameLogWriter> create(const std::string& path, std::uint64_t identity);
   /// Goes on after the first `size_bytes` of an existing log.
-  static Result<ViewLogWriter> append(const std::string& path, std::uint64_t size_bytes);
+  static Result<FrameLogWriter> append(const std::string& path, std::uint64_t size_bytes);
   /// kIo when the disk is full; the views before are safe.
-  [[nodiscard]] Status add(const LoggedView& view);
+  [[nodiscard]] Status add(const LoggedFrame& view);
   [[nodiscard]] Status flush();
 
  private:
-  ViewLogWriter() = default;
+  FrameLogWriter() = default;
   std::string path_;
   std::ofstream file_;
   std::vector<char> bytes_;
 };
 
 /// Reads views in their order. Not thread-safe.
-class ViewLogReader {
+class FrameLogReader {
  public:
   /// kNotFound; kCorrupt for another kind of file; kInvalid where the log belongs to another build.
-  static Result<ViewLogReader> open(const std::string& path, std::uint64_t identity);
+  static Result<FrameLogReader> open(const std::string& path, std::uint64_t identity);
   /// kEnd after the last whole record.
-  [[nodiscard]] Status next(LoggedView* view);
+  [[nodiscard]] Status next(LoggedFrame* view);
   /// Where the records read so far end.
   [[nodiscard]] std::uint64_t size_bytes() const { return position_; }
 
  private:
-  ViewLogReader() = default;
+  FrameLogReader() = default;
   std::string path_;
   std::ifstream file_;
   std::uint64_t position_ = 0, file_bytes_ = 0;
