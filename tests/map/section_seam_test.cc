@@ -201,6 +201,20 @@ TEST(SectionSeam, EntriesThatWrapOverlapOrRepeatAreRefused) {
   }
 }
 
+TEST(SectionSeam, IdsAscend) {
+  MapData map = map_with_light();
+  map.extra_sections[map_format::section_id("ZZZZ")] = {};
+  const std::vector<std::byte> good = *serialize_map(map);
+  ASSERT_TRUE(open_status(good).is_ok());
+  const std::size_t entry = sizeof(map_format::FileHeader) + map_format::kNumCoreSections * sizeof(map_format::SectionRecord);
+  for (const map_format::SectionId id : {map_format::section_id("ZZZZ"), map_format::section_id("zzzz")}) {  // twice, and before
+    std::vector<std::byte> bytes = good;
+    std::memcpy(bytes.data() + entry, &id, sizeof id);
+    testing::reseal(bytes);
+    EXPECT_NE(open_status(bytes).message().find("wrong table entry of section ZZZZ"), std::string::npos) << open_status(bytes).message();
+  }
+}
+
 TEST(SectionSeam, TheirNumberIsBounded) {
   MapData map = map_with_light();
   for (std::uint32_t i = 0; map.extra_sections.size() < map_format::kMaxSections - map_format::kNumCoreSections; ++i) {
