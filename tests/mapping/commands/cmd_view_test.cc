@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/io/image_file.h"
+#include "core/map/map_view.h"
 #include "tests/map/room_map.h"
 #include "tests/tools/command_runner.h"
 #include "tools/camloc-map/commands.h"
