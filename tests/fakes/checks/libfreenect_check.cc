@@ -20,8 +20,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/fakes/kinect_frames.h"
 #include "tests/fakes/checks/stream_check.h"
+#include "tests/fakes/kinect_frames.h"
 
 namespace {
 
