@@ -271,7 +271,8 @@ void Service::report_state(const Localization& localization) {
       break;
     }
     case State::kLocalized:
-      std::snprintf(text.data(), text.size(), "%u inliers of %u matches", localization.evidence.num_inliers, localization.evidence.num_matches);
+      std::snprintf(text.data(), text.size(), "%u inliers of %u matches", localization.evidence.num_inliers,
+                    localization.evidence.num_matches);
       break;
     default: std::snprintf(text.data(), text.size(), "%s", to_string(localization.reason)); break;
   }

@@ -52,7 +52,7 @@ using camloc::PrintTo;
 namespace kinect {
 using camloc::PrintTo;
 }
-namespace map_tool {
+namespace mapping {
 using camloc::PrintTo;
 }
 namespace openni2 {

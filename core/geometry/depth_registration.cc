@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Depth look-up per colour pixel and registration of whole depth images.
+// Depth look-up per colour pixel.
 #include "core/geometry/depth_registration.h"
 
 #include <algorithm>
@@ -19,32 +19,6 @@ bool contains(ImageView<std::uint16_t> image, int x, int y) { return x >= 0 && y
 /// Nearest pixel, or -1 for what no image can contain (also NaN and points behind the camera).
 int nearest_pixel(double coordinate) {
   return coordinate > -0.5 && coordinate < 65536.0 ? static_cast<int>(std::floor(coordinate + 0.5)) : -1;
-}
-
-/// The pixels whose centre lies within `radius` of `centre`, at least the nearest one, clipped to [0, size).
-struct PixelRange {
-  int begin, end;
-};
-
-PixelRange covered_pixels(double centre, double radius, int size) {
-  if (!(centre > -2.0 && centre < size + 1.0)) return {0, 0};
-  const int nearest = static_cast<int>(std::floor(centre + 0.5));
-  const int first = std::min(nearest, static_cast<int>(std::ceil(centre - radius)));
-  const int last = std::max(nearest, static_cast<int>(std::floor(centre + radius)));
-  return {std::max(first, 0), std::min(last + 1, size)};
-}
-
-void splat(const RgbdCamera& camera, const Eigen::Vector3d& p_color, double footprint_radius_px, Image<float>* registered) {
-  const Eigen::Vector2d pixel = camera.color.project(p_color);
-  const PixelRange columns = covered_pixels(pixel.x(), footprint_radius_px, registered->width);
-  const PixelRange rows = covered_pixels(pixel.y(), footprint_radius_px, registered->height);
-  const float z = static_cast<float>(p_color.z());
-  for (int y = rows.begin; y < rows.end; ++y) {
-    for (int x = columns.begin; x < columns.end; ++x) {
-      float& nearest = registered->at(x, y);
-      if (nearest == 0.0F || z < nearest) nearest = z;
-    }
-  }
 }
 
 }  // namespace
@@ -107,30 +81,6 @@ float DepthLookup::follow_epipolar_line(ImageView<std::uint16_t> depth, float u,
     return is_same_point && foreground_depth(depth, x, y) > 0.0F ? static_cast<float>(z_color) : 0.0F;
   }
   return 0.0F;
-}
-
-void register_depth(const RgbdCamera& camera, ImageView<std::uint16_t> depth, Image<float>* registered) {
-  registered->resize(camera.color.width, camera.color.height);
-  std::fill(registered->pixels.begin(), registered->pixels.end(), 0.0F);
-  const int width = std::min(depth.width, camera.depth.width), height = std::min(depth.height, camera.depth.height);
-  const Eigen::Matrix3d R_color_depth = camera.T_color_depth.rotation.toRotationMatrix();
-  const double magnification = camera.color.mean_focal_px() / camera.depth.mean_focal_px();
-  if (depth.empty()) return;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const float z = camera.depth_m(depth.at(x, y));
-      if (z == 0.0F) continue;
-      if (camera.is_depth_registered) {
-        if (x < registered->width && y < registered->height) registered->at(x, y) = z;
-        continue;
-      }
-      const Eigen::Vector2d ray = camera.depth.undistort(Eigen::Vector2d(x, y));
-      const Eigen::Vector3d p_depth(ray.x() * z, ray.y() * z, z);
-      const Eigen::Vector3d p_color = R_color_depth * p_depth + camera.T_color_depth.translation;
-      // A depth pixel covers the colour pixels under its own area, so that a finer colour image gets no holes.
-      if (p_color.z() > 0.0) splat(camera, p_color, 0.5 * magnification * z / p_color.z(), registered);
-    }
-  }
 }
 
 }  // namespace camloc

@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Depth for colour pixels from two cameras side by side. The frame path looks depth up per keypoint; registering the
-// whole image (z-buffered) takes 7 ms and is for offline tools.
+// Depth for colour pixels from two cameras side by side, looked up per keypoint: registering the whole image (z-buffered) takes 7 ms.
 #pragma once
 
 #include "core/base/frame.h"
@@ -32,9 +31,5 @@ class DepthLookup {
   Eigen::Vector3d t_color_depth_, t_depth_color_;
   UndistortionTable color_rays_, depth_rays_;
 };
-
-/// Registers a whole depth image into the colour camera: metres per colour pixel, 0 where none, the nearest surface
-/// wins. `registered` is resized to the colour image.
-void register_depth(const RgbdCamera& camera, ImageView<std::uint16_t> depth, Image<float>* registered);
 
 }  // namespace camloc

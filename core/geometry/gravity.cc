@@ -18,9 +18,6 @@ constexpr int kMaxMedianSteps = 100;
 /// Readings follow each other: this many of them say as much as one that is independent.
 constexpr double kReadingsPerIndependent = 10;
 constexpr double kMinRoughLength = 0.3;
-constexpr double kMaxRoughAngleCosine = 0.5;  ///< 60 degrees
-/// The second best mapping must scatter this much more.
-constexpr double kMinScatterRatio = 1.3;
 
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
@@ -122,37 +119,6 @@ Result<GravityEstimate> gravity_from_accelerometer(std::span<const OrientedReadi
   const double num_independent = std::max(1.0, static_cast<double>(mean.num_inliers) / kReadingsPerIndependent);
   estimate.sigma_rad = std::hypot(mean.rms_rad / std::sqrt(num_independent), options.bias_sigma_rad);
   return estimate;
-}
-
-Result<Eigen::Matrix3d> find_accelerometer_axes(std::span<const OrientedReading> readings, const Eigen::Vector3d& rough_up_map,
-                                                const AccelerometerOptions& options) {
-  std::optional<Eigen::Matrix3d> best;
-  double least = 0, second = 0;
-  for (int signs = 0; signs < 8; ++signs) {
-    AccelerometerOptions turned = options;
-    const Eigen::Vector3d diagonal((signs & 1) != 0 ? -1 : 1, (signs & 2) != 0 ? -1 : 1, (signs & 4) != 0 ? -1 : 1);
-    turned.R_camera_accelerometer = diagonal.asDiagonal();
-    const std::vector<Eigen::Vector3d> directions = directions_up(readings, turned);
-    if (const Status status = check_count(directions.size(), readings.size(), options); !status) return status;
-    const RobustMean mean = robust_mean(directions);
-    if (mean.direction.dot(rough_up_map.normalized()) < kMaxRoughAngleCosine) continue;
-    const double scatter = mean.median_angle_rad;
-    if (!best || scatter < least) {
-      second = best ? least : 1e9;
-      least = scatter;
-      best = turned.R_camera_accelerometer;
-    } else {
-      second = std::min(second, scatter);
-    }
-  }
-  if (!best || least > options.max_scatter_rad) {
-    return {ErrorCode::kInvalid,
-            "under no signs of its axes do the accelerometer's readings agree with the poses; is it of this recording?"};
-  }
-  if (second < kMinScatterRatio * least + 0.01) {
-    return {ErrorCode::kInvalid, "the signs of the accelerometer's axes cannot be told: the camera was not tilted enough; name them"};
-  }
-  return *best;
 }
 
 }  // namespace camloc

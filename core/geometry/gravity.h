@@ -60,13 +60,6 @@ struct AccelerometerOptions {
 [[nodiscard]] Result<GravityEstimate> gravity_from_accelerometer(std::span<const OrientedReading> readings,
                                                                  const AccelerometerOptions& options = {});
 
-/// Of the eight mappings that only turn axes over, the one under which the readings agree best, given that up is within 60
-/// degrees of `rough_up_map`: for devices whose axes nobody wrote down. kInvalid where two of them do about equally well,
-/// because the camera was never tilted in that direction.
-[[nodiscard]] Result<Eigen::Matrix3d> find_accelerometer_axes(std::span<const OrientedReading> readings,
-                                                              const Eigen::Vector3d& rough_up_map,
-                                                              const AccelerometerOptions& options = {});
-
 // ---- floor
 
 struct FloorOptions {

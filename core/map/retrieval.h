@@ -21,8 +21,8 @@ class Retriever {
  public:
   /// Features of an image beyond `max_features` are ignored.
   Retriever(const MapView& map, int max_features);
-  /// The `count` best keyframes, best first, fewer when fewer share a word. Scores are exact up to the 8 bits of the weights. The same features
-  /// give the same bits. Valid until the next call.
+  /// The `count` best keyframes, best first, fewer when fewer share a word. Scores are exact up to the 8 bits of the weights. The same
+  /// features give the same bits. Valid until the next call.
   std::span<const RankedKeyframe> retrieve(std::span<const Descriptor> descriptors, int count);
 
  private:

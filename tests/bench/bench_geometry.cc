@@ -11,6 +11,7 @@
 #include "core/geometry/pnp_ransac.h"
 #include "core/geometry/pose_refinement.h"
 #include "tests/geometry/generated.h"
+#include "tests/geometry/registered_depth.h"
 
 namespace camloc {
 namespace {
@@ -192,7 +193,7 @@ void register_whole_depth(benchmark::State& state) {
   const Image<std::uint16_t> depth = slanted_depth();
   const RgbdCamera camera = unregistered_camera();
   Image<float> registered;
-  for (auto _ : state) register_depth(camera, depth.view(), &registered);
+  for (auto _ : state) testing::register_depth(camera, depth.view(), &registered);
 }
 BENCHMARK(register_whole_depth)->Unit(benchmark::kMicrosecond);
 

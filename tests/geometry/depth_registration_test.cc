@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "tests/geometry/allocation_counter.h"
+#include "tests/geometry/registered_depth.h"
 
 namespace camloc {
 namespace {
@@ -106,7 +107,7 @@ TEST(DepthLookup, AgreesWithRegistration) {
   const Image<std::uint16_t> depth = render(camera, World{true});
   const DepthLookup lookup(camera);
   Image<float> registered;
-  register_depth(camera, depth.view(), &registered);
+  testing::register_depth(camera, depth.view(), &registered);
   ASSERT_EQ(registered.width, 640);
   ASSERT_EQ(registered.height, 480);
   int num_both = 0, num_apart = 0;
@@ -128,7 +129,7 @@ TEST(DepthRegistration, NearestSurfaceWinsAndImageHasNoHoles) {
   const World world{true};
   Image<float> registered;
   const Image<std::uint16_t> depth = render(camera, world);
-  register_depth(camera, depth.view(), &registered);
+  testing::register_depth(camera, depth.view(), &registered);
   int num_holes = 0, num_wrong = 0, num_asked = 0;
   for (int v = 40; v < 440; ++v) {
     for (int u = 40; u < 600; ++u) {
@@ -169,14 +170,14 @@ TEST(DepthLookup, GivesNothingForInvalidDepth) {
     std::fill(depth.pixels.begin(), depth.pixels.end(), std::uint16_t{65535});
     EXPECT_EQ(lookup.depth_at(depth.view(), 320, 240), 0.0F);
     Image<float> registered;
-    register_depth(camera, depth.view(), &registered);
+    testing::register_depth(camera, depth.view(), &registered);
     EXPECT_EQ(*std::max_element(registered.pixels.begin(), registered.pixels.end()), 0.0F);
-    register_depth(camera, {}, &registered);
+    testing::register_depth(camera, {}, &registered);
     EXPECT_EQ(registered.pixels.size(), 640U * 480U);
     // An image smaller than the camera says must not be read beyond its end.
     depth.resize(16, 1);
     EXPECT_EQ(lookup.depth_at(depth.view(), 320, 240), 0.0F);
-    register_depth(camera, depth.view(), &registered);
+    testing::register_depth(camera, depth.view(), &registered);
   }
 }
 

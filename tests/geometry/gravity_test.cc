@@ -82,23 +82,6 @@ TEST(GravityFromAccelerometer, RefusesFewReadingsPushesAndWrongAxes) {
   EXPECT_NE(wrong.status().message().find("axes"), std::string::npos) << wrong.status().message();
 }
 
-TEST(FindAccelerometerAxes, TellsAllEightSigns) {
-  for (int signs = 0; signs < 8; ++signs) {
-    const Eigen::Matrix3d R = Eigen::Vector3d((signs & 1) != 0 ? -1 : 1, (signs & 2) != 0 ? -1 : 1, (signs & 4) != 0 ? -1 : 1).asDiagonal();
-    const Carried carried = carry(400, 0.3, 0.2, R);
-    const auto found = find_accelerometer_axes(carried.readings, carried.up_map + Eigen::Vector3d(0.3, 0.2, 0));
-    ASSERT_TRUE(found.is_ok()) << found.status().message();
-    EXPECT_EQ(*found, R);
-  }
-}
-
-TEST(FindAccelerometerAxes, SaysWhenTheCameraWasNotTilted) {
-  const Carried level = carry(400, 0.1, 0, kinect_R_camera_accelerometer(), 0.002);
-  const auto found = find_accelerometer_axes(level.readings, level.up_map);
-  ASSERT_FALSE(found.is_ok());
-  EXPECT_NE(found.status().message().find("not tilted enough"), std::string::npos) << found.status().message();
-}
-
 TEST(RoughUp, MeanOfTheImageTops) {
   std::mt19937 rng(3);
   const Eigen::Quaterniond R_map_level = exp_so3({0.3, -0.2, 0.9});

@@ -34,9 +34,8 @@ Status check_sizes(const FrameSourceInfo& info, const RgbdCamera& camera, const 
 Status set_localizer_number(const std::string& assignment, LocalizerNumbers* numbers) {
   constexpr std::string_view kGroup = "localizer.";
   const bool is_ours = assignment.starts_with(kGroup);
-  const Status status =
-      is_ours ? set_number(localizer_number_table(), std::string_view(assignment).substr(kGroup.size()), numbers)
-              : Status(ErrorCode::kInvalid, assignment + ": is not localizer.NAME=VALUE");
+  const Status status = is_ours ? set_number(localizer_number_table(), std::string_view(assignment).substr(kGroup.size()), numbers)
+                                : Status(ErrorCode::kInvalid, assignment + ": is not localizer.NAME=VALUE");
   return status.with_context("--set");
 }
 

@@ -28,7 +28,7 @@ struct SequenceRunOptions {
   bool use_depth = true;
   std::vector<std::string> perturbations;
   StageTimer::Clock clock = nullptr;  ///< of stage times; monotonic_ns where there is none
-  std::vector<std::string> numbers;  ///< "localizer.NAME=VALUE", for experiments
+  std::vector<std::string> numbers;   ///< "localizer.NAME=VALUE", for experiments
 };
 
 /// Map, camera and source, opened and checked against each other. Members are destroyed in reverse order.

@@ -17,7 +17,7 @@ namespace {
 // Colours are RGB; the palette keeps apart for colour-blind readers (blue, orange, grey).
 constexpr Rgb kBackground{252, 252, 250}, kInk{40, 40, 46}, kLandmark{168, 172, 180};
 constexpr Rgb kTruth{30, 30, 34}, kGood{0, 114, 178}, kFair{230, 159, 0}, kBad{213, 60, 40}, kKeyframe{120, 160, 120};
-constexpr int kMargin = 50, kHeader = 70, kFooter = 60;
+constexpr int kWidthPx = 1200, kMargin = 50, kHeader = 70, kFooter = 60;
 constexpr double kTextPx = 10, kTitlePx = 12.5;
 constexpr double kGoodM = 0.05, kFairM = 0.25;
 
@@ -110,10 +110,10 @@ void draw_estimate(ColorImage* canvas, const TopView& view, const Projection& pr
 
 }  // namespace
 
-Status write_top_view(const TopView& view, const std::string& path, int width_px) {
+Status write_top_view(const TopView& view, const std::string& path) {
   const std::vector<Eigen::Vector3d> landmarks = view.map == nullptr ? std::vector<Eigen::Vector3d>() : landmark_positions(*view.map);
-  const Projection projection = fit(landmarks, view.truth, view.estimate, width_px);
-  ColorImage canvas = blank_image(width_px, projection.height_px, kBackground);
+  const Projection projection = fit(landmarks, view.truth, view.estimate);
+  ColorImage canvas = blank_image(kWidthPx, projection.height_px, kBackground);
   for (const auto& p : landmarks) {
     const Eigen::Vector2d at = projection(p);
     // Far landmarks must not run into the title and the scale.

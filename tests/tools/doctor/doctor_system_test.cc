@@ -4,8 +4,8 @@
 // What can be wrong with service, clock, memory and network.
 #include <gtest/gtest.h>
 
-#include "tests/tools/expect_check.h"
 #include "tests/drivers/fake_usb.h"
+#include "tests/tools/expect_check.h"
 
 namespace camloc::tools {
 namespace {
