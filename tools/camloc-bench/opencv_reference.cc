@@ -6,7 +6,7 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/features2d.hpp>
 
-#include "core/localize/local_landmarks.h"
+#include "core/map/map_landmarks.h"
 
 namespace camloc::bench {
 namespace {
@@ -35,7 +35,7 @@ struct OpencvReference::Impl {
         now_ns(clock),
         orb(cv::ORB::create(reference_options.num_features)),
         matcher(cv::NORM_HAMMING),
-        local(map_view, camera.color, LocalLandmarksOptions{}) {
+        local(map_view, camera.color, MapLandmarksOptions{}) {
     const Intrinsics& c = camera.color;
     K = (cv::Mat_<double>(3, 3) << c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1);
     distortion = cv::Mat::zeros(1, 5, CV_64F);
@@ -67,7 +67,7 @@ struct OpencvReference::Impl {
   StageTimer::Clock now_ns;
   cv::Ptr<cv::ORB> orb;
   cv::BFMatcher matcher;
-  LocalLandmarks local;
+  MapLandmarks local;
   cv::Mat K, distortion, all_descriptors, local_descriptors;
   std::vector<std::uint32_t> all_landmarks, local_landmarks;
   std::optional<Rigid3> last;

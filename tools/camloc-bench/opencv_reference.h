@@ -11,7 +11,7 @@
 
 #include "core/base/frame.h"
 #include "core/geometry/camera.h"
-#include "core/localize/stage_timer.h"
+#include "core/base/stage_timer.h"
 #include "core/map/map_view.h"
 
 namespace camloc::bench {
