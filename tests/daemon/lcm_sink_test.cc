@@ -90,7 +90,7 @@ TEST(FillPoseTest, WithoutAPoseNothingLooksCertain) {
 
 TEST(FillPoseTest, NumbersAreClippedNotWrapped) {
   Localization in = localized();
-  in.num_matches = std::numeric_limits<std::uint32_t>::max();
+  in.evidence.num_matches = std::numeric_limits<std::uint32_t>::max();
   in.quality = 1000;
   in.stage_ns[0] = std::numeric_limits<std::int64_t>::max();
   const pose_t out = message_of(in, PoseContext{});

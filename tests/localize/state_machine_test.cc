@@ -108,7 +108,7 @@ TEST_F(StateMachine, AThinFixIsNotBelievedRightAfterAnAmbiguousOne) {
   ASSERT_EQ(whole(1).state, State::kLocalized);
   const Localization alone = right_half(37);  // 1.2 s later
   EXPECT_EQ(alone.state, State::kLocalized);
-  EXPECT_LT(alone.num_inliers, VerificationOptions{}.strong_inliers);
+  EXPECT_LT(alone.evidence.num_inliers, LocalizerNumbers{}.strong_inliers);
 
   localizer.reset();
   ASSERT_EQ(whole(41).state, State::kLocalized);

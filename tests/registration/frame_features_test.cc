@@ -79,8 +79,9 @@ TEST(FrameFeatures, RaysAndDepthsBelongToTheirKeypoints) {
 TEST(FrameFeatures, TheSameFrameGivesTheSameView) {
   FrameExtractor extractor(test_camera(), OrbOptions{.num_features = 300});
   const FrameBuffer frame = test_frame();
-  FrameFeatures a;
-  extractor.extract(frame.view()), b = extractor.extract(frame.view(), &a);
+  FrameFeatures a, b;
+  extractor.extract(frame.view(), &a);
+  extractor.extract(frame.view(), &b);
   EXPECT_EQ(a.features.descriptors, b.features.descriptors);
   EXPECT_EQ(a.normalized, b.normalized);
   EXPECT_EQ(a.depth_m, b.depth_m);
