@@ -58,7 +58,7 @@ Matrix6d expected_information(const Query& query, const MapData& map, const Loca
     const Eigen::Vector2f at = query.of.view.normalized[i];
     const double z = (T_camera_map * landmark.position_m.cast<double>()).z();
     const PointJacobian J = point_jacobian(at.x(), at.y(), z);
-    const double sigma_px = levels.pair_sigma_px(query.of.view.features.keypoints[i].level);
+    const double sigma_px = pair_sigma_px(levels.scale(query.of.view.features.keypoints[i].level), kMapLandmarkSigmaPx);
     const double sigma_image = std::hypot(sigma_px / focal_px, landmark.position_sigma_m / z);
     information += (J.u * J.u.transpose() + J.v * J.v.transpose()) * (options.repeatability / (sigma_image * sigma_image));
     if (query.of.view.depth_m[i] == 0) continue;

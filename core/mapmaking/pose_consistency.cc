@@ -20,6 +20,7 @@ PoseSolverOptions solver_options(const PoseConsistencyOptions& options) {
   solver.max_features = solver.max_candidates = solver.max_ransac_pairs = options.max_features;
   solver.candidate_ratio = 0.85;
   solver.min_inliers = options.min_inliers;
+  solver.landmark_sigma_px = kFreshLandmarkSigmaPx;
   solver.gathers_evidence = false;
   return solver;
 }

@@ -28,6 +28,7 @@ PoseSolverOptions mapping_solver_options(int max_features, bool use_depth) {
   options.guided_radius_px = 6;
   options.min_inliers = 20;
   options.use_depth = use_depth;
+  options.landmark_sigma_px = kFreshLandmarkSigmaPx;
   options.gathers_evidence = false;
   return options;
 }

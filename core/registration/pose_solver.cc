@@ -40,7 +40,6 @@ PnpRansacOptions ransac_options(const PoseSolverOptions& options) {
 
 PoseSolver::PoseSolver(const RgbdCamera& camera, const PyramidLevels& levels, const PoseSolverOptions& options, StageTimer* timer)
     : camera_(camera),
-      levels_(levels),
       focal_px_(camera.color.mean_focal_px()),
       options_(options),
       grid_(camera.color.width, camera.color.height, options.max_features),
@@ -53,6 +52,8 @@ PoseSolver::PoseSolver(const RgbdCamera& camera, const PyramidLevels& levels, co
       inlier_mask_(static_cast<std::size_t>(options.max_features)),
       is_patch_seen_(static_cast<std::size_t>(patch_count(camera.color.width) * patch_count(camera.color.height))),
       timer_(timer) {
+  for (std::size_t level = 0; level < pair_sigma_px_.size(); ++level)
+    pair_sigma_px_[level] = pair_sigma_px(levels.scale(static_cast<std::uint8_t>(level)), options.landmark_sigma_px);
   refinement_.depth_noise = camera.depth_noise;
   refinement_.use_depth = options.use_depth;
 }
@@ -132,8 +133,7 @@ void PoseSolver::fill_pairs(const LandmarkSource& landmarks, std::span<const Mat
     const Eigen::Vector3f p_map = landmarks.position_m(match.landmark);
     if (T_map_explained != nullptr && is_explained(p_map, i, *T_map_explained)) continue;
     pairs_.add(view_->normalized[i].x(), view_->normalized[i].y(), p_map.x(), p_map.y(), p_map.z(), view_->depth_m[i],
-               levels_.pair_sigma_px(view_->features.keypoints[i].level), static_cast<float>(match.distance), match.feature,
-               match.landmark);
+               pair_sigma_px_[view_->features.keypoints[i].level], static_cast<float>(match.distance), match.feature, match.landmark);
   }
   pairs_.sort_by_rank();
   pairs_.truncate(limit);

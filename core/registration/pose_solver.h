@@ -10,6 +10,7 @@
 // Nothing is decided here: what a pose is worth is for who asked.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -39,6 +40,7 @@ struct PoseSolverOptions {
   float guided_radius_px = 12.0F;  ///< its search window
   int min_inliers = 0;             ///< a pose with fewer is not found (after RANSAC: half as many)
   bool use_depth = true;           ///< measured depth takes part in the pose
+  float landmark_sigma_px = kMapLandmarkSigmaPx;
   /// Also asks what verification asks: a free focal length, landmarks seen through, inliers that share their errors. A tenth of the
   /// time.
   bool gathers_evidence = true;
@@ -91,7 +93,7 @@ class PoseSolver {
   }
 
   RgbdCamera camera_;
-  PyramidLevels levels_;
+  std::array<float, 256> pair_sigma_px_;  ///< per level
   double focal_px_;
   PoseSolverOptions options_;
   PoseRefinementOptions refinement_;

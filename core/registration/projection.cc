@@ -41,7 +41,7 @@ LandmarkProjector::LandmarkProjector(const Intrinsics& color, const PyramidLevel
 }
 
 bool LandmarkProjector::may_see(const Eigen::Vector3d& center, double radius_m) const {
-  if (center.z() < -radius_m || center.norm() > max_range_m_ + radius_m) return false;
+  if (center.z() < -radius_m || center.z() > max_range_m_ + radius_m) return false;
   // Outside one of the four planes through the camera and the image's border by more than the radius?
   const auto is_beyond = [&](double coordinate, double slope) {
     return coordinate - slope * center.z() > radius_m * std::hypot(1.0, slope);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Places whose outlook is known: a rich room, a bare wall, a corridor of identical bays.
-include "core/registration/keypoint_noise.h"
+include "core/registration/keypoint_noise.h" include "core/map/map_view.h"
 #include "core/mapmaking/localizability.h"
 
 #include <gtest/gtest.h>
@@ -12,6 +12,7 @@ include "core/registration/keypoint_noise.h"
 #include <numbers>
 
 #include "core/geometry/pose_refinement.h"
+#include "core/map/map_writer.h"
 #include "tests/map/room_map.h"
 
     namespace camloc {
@@ -197,7 +198,7 @@ include "core/registration/keypoint_noise.h"
     const double focal_px = map.camera.color.mean_focal_px();
     PoseRefinementOptions options;
     options.depth_noise = map.camera.depth_noise;
-    const float sigma_px = pair_sigma_px(1);
+    const float sigma_px = pair_sigma_px(1, kMapLandmarkSigmaPx);
     Random random(4);
     Correspondences pairs(seen.size());
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();

@@ -21,7 +21,7 @@ TEST(KeypointNoise, GrowsWithTheLevelButFarLessThanItsScale) {
 TEST(KeypointNoise, ALandmarkThatIsTakenAsItIsAddsItsOwnError) {
   const PyramidLevels levels(1.2F, 8);
   for (std::uint8_t level = 0; level < 8; ++level)
-    EXPECT_NEAR(std::pow(levels.pair_sigma_px(level), 2), std::pow(levels.sigma_px(level), 2) + 1.25 * 1.25, 1e-5);
+    EXPECT_NEAR(std::pow(pair_sigma_px(levels.scale(level), 1.25F), 2), std::pow(levels.sigma_px(level), 2) + 1.25 * 1.25, 1e-5);
 }
 
 TEST(KeypointNoise, LevelsBeyondThePyramidAreItsLast) {
