@@ -76,7 +76,7 @@ TEST(MonitorViewTest, JsonHasEveryFieldOfTheCamera) {
   status_t status = make_status();
   status.camera_state = "streaming";
   status.frames_unpaired = 4;
-  const json record = status_json(status);
+  const auto record = status_json(status);
   EXPECT_EQ(record["camera_state"], "streaming");
   EXPECT_EQ(record["frames_unpaired"], 4);
   for (const char* key : {"camera_stalls", "stream_restarts", "device_reopens", "device_resets", "last_recovery_ms", "packets_lost",
