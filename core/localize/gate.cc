@@ -11,6 +11,7 @@ void Gate::reset() {
   motion_.reset();
   unconfirmed_.reset();
   ambiguous_ns_.reset();
+  num_last_inliers_ = 0;
 }
 
 void Gate::begin(std::int64_t stamp_ns) {
@@ -63,12 +64,17 @@ bool Gate::was_ambiguous(std::int64_t stamp_ns, const Candidate& candidate) cons
   return ambiguous_ns_ && stamp_ns - *ambiguous_ns_ <= ns(numbers_.ambiguity_memory_s);
 }
 
+bool Gate::is_doubtful(const Candidate& candidate) const {
+  return candidate.is_continuation && is_thin(candidate) && candidate.evidence.num_inliers < numbers_.min_kept_share * num_last_inliers_;
+}
+
 double Gate::accept(std::int64_t stamp_ns, const Candidate& candidate) {
   const PoseEvidence& pose = candidate.evidence;
   const bool is_jump = !candidate.is_continuation && motion_.has_fix();
   const double jump_m = is_jump ? (pose.T_map_camera.translation - motion_.predict(stamp_ns).translation).norm() : 0;
   motion_.add_fix(stamp_ns, pose.T_map_camera, pose.covariance, candidate.is_continuation);
   unconfirmed_.reset();
+  num_last_inliers_ = pose.num_inliers;
   return jump_m;
 }
 

@@ -46,6 +46,9 @@ class Gate {
 
   /// What becomes of the candidate's reason. Takes notice of places that look alike.
   [[nodiscard]] Reason judge(std::int64_t stamp_ns, const Candidate& candidate);
+  /// Believed, but the next proposer is asked as well: a tracked pose on thin evidence that has lost most of what the last one had. A
+  /// pattern that repeats agrees with itself one period off, but then the rest of the image does not.
+  [[nodiscard]] bool is_doubtful(const Candidate& candidate) const;
   /// The candidate is the pose. Returns how far that is from the prediction where the pose is no continuation, else 0.
   double accept(std::int64_t stamp_ns, const Candidate& candidate);
 
@@ -62,6 +65,7 @@ class Gate {
   MotionModel motion_;
   MotionModel unconfirmed_;                   ///< the last fix that contradicts the motion so far
   std::int64_t unconfirmed_since_ns_ = 0;     ///< when fixes that agree with it began
+  std::uint32_t num_last_inliers_ = 0;        ///< of the last pose
   std::optional<std::int64_t> ambiguous_ns_;  ///< when another place last explained a frame nearly as well
 };
 

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The whole job is process(): observe the frame; for each proposer, cheapest first, examine what it proposes (solve each place, take
-// the best pose, verify it) and ask the gate whether it is to be believed; then report. Below it are those steps, in that order.
+// the best pose, verify it) and ask the gate whether it is to be believed, until one is without doubt; then report. Below it are those
+// steps, in that order.
 #include "core/localize/localizer.h"
 
 #include <algorithm>
@@ -17,6 +18,12 @@ namespace {
 constexpr int kMaxCandidates = 8000;
 /// Sampling is seeded by the frame and the place: seeds of neighbouring frames do not meet.
 constexpr std::uint64_t kSeedsPerFrame = 8;
+
+/// A pose before none, more evidence before less; of what is no pose the last word.
+bool is_better(const Candidate& candidate, const Candidate& best) {
+  if (best.reason != Reason::kNone) return true;
+  return candidate.reason == Reason::kNone && candidate.evidence.num_inliers > best.evidence.num_inliers;
+}
 
 /// What a candidate place may be off: metres and a good part of a turn. It is a hint for people, never a pose.
 Matrix6d coarse_uncertainty() {
@@ -77,18 +84,23 @@ const Localization& Localizer::process(const Frame& frame) {
   begin(frame);
   if (const Reason unusable = observe(frame); unusable != Reason::kNone) return decline(frame, {.reason = unusable});
 
-  Candidate candidate;
+  Candidate best;
+  Proposer* proposed_by = nullptr;
   for (const auto& proposer : proposers_) {
     const auto proposals = proposer->propose({frame.stamp_ns, &view_, &gate_});
     timer_.finish(Stage::kCandidates);
-    candidate = examine(frame, proposals);
+    Candidate candidate = examine(frame, proposals);
     candidate.reason = gate_.judge(frame.stamp_ns, candidate);
-    if (candidate.reason != Reason::kNone) continue;
-    proposer->on_accepted();
-    break;
+    if (is_better(candidate, best)) {
+      best = candidate;
+      proposed_by = proposer.get();
+    }
+    if (best.reason == Reason::kNone && !gate_.is_doubtful(best)) break;
   }
-  watch_calibration(candidate.evidence);
-  return candidate.reason == Reason::kNone ? accept(frame, candidate) : decline(frame, candidate);
+  watch_calibration(best.evidence);
+  if (best.reason != Reason::kNone) return decline(frame, best);
+  proposed_by->on_accepted();
+  return accept(frame, best);
 }
 
 void Localizer::hint(const PoseHint& hint) {

@@ -55,6 +55,9 @@ constexpr NumberEntry<N> kTable[] = {
     {"turn_change_rad_per_s", "rad/s", &N::turn_change_rad_per_s, "the same"},
     {"expected_sigmas", "sigmas", &N::expected_sigmas, "of prediction and pose together, where motion must expect a pose"},
     {"max_velocity_age_s", "s", &N::max_velocity_age_s, "two poses farther apart say nothing about velocity"},
+    {"min_kept_share", "share", &N::min_kept_share,
+     "of the last pose's inliers; a thin tracked pose with fewer has the whole map asked, too (synthetic flat: 27 inliers after 302 were "
+     "31 cm off)"},
     {"max_tracking_gap_s", "s", &N::max_tracking_gap_s, "without a pose; after it a prediction is no better than a look at the whole map"},
     {"motion_memory_s", "s", &N::motion_memory_s,
      "for so long the last pose limits where the camera can be (building: after a moment without features a stretch that looks alike at "

@@ -57,6 +57,7 @@ struct LocalizerNumbers {
   double turn_change_rad_per_s = 0.5;
   double expected_sigmas = 3.0;
   double max_velocity_age_s = 0.5;
+  double min_kept_share = 0.5;
   double max_tracking_gap_s = 1.0;
   double motion_memory_s = 5.0;
   double confirmation_s = 1.0;

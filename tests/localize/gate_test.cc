@@ -90,6 +90,16 @@ TEST(Gate, PlacesThatLookedAlikeStayDoubtfulForAMoment) {
   EXPECT_EQ(gate.judge(71 * kSecond + 1, at(0, 30)), Reason::kNone) << "a second later";
 }
 
+TEST(Gate, DoubtsAThinTrackedPoseThatLostMostOfTheLast) {
+  Gate gate = gate_at_origin();  // 200 inliers
+  EXPECT_TRUE(gate.is_doubtful(at(0, 30, true)));
+  EXPECT_FALSE(gate.is_doubtful(at(0, 30))) << "the whole map was asked already";
+  EXPECT_FALSE(gate.is_doubtful(at(0, 90, true))) << "strong enough by itself";
+  gate.accept(kSecond / 10, at(0, 30, true));
+  EXPECT_FALSE(gate.is_doubtful(at(0, 28, true))) << "it has been like this for a while";
+  EXPECT_TRUE(gate.is_doubtful(at(0, 14, true)));
+}
+
 TEST(Gate, SaysHowFarAJumpWent) {
   Gate gate = gate_at_origin();
   EXPECT_EQ(gate.accept(kSecond / 10, at(0.01, 100, true)), 0) << "a continuation";

@@ -143,6 +143,7 @@ TEST(Tracker, WantsAKeyframeWhenTheViewIsNew) {
     found.is_found = true;
     found.T_map_camera = T;
     found.inliers.resize(300);
+    found.num_inliers = 300;
     return f.tracker.wants_keyframe(view, found);
   };
   EXPECT_FALSE(wants(Fixture::pose(0)));

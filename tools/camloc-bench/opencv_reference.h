@@ -10,8 +10,8 @@
 #include <optional>
 
 #include "core/base/frame.h"
-#include "core/geometry/camera.h"
 #include "core/base/stage_timer.h"
+#include "core/geometry/camera.h"
 #include "core/map/map_view.h"
 
 namespace camloc::bench {

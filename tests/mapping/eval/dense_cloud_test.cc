@@ -76,7 +76,7 @@ TEST(DenseCloud, LeavesOutWhatIsFarAndTheEdges) {
   }
   EXPECT_GT(low, 0.1F + 1.5F / 145);  // not the outermost pixels of the post
   EXPECT_LT(high, 0.3F - 1.5F / 145);
-  EXPECT_GT(high - low, 0.1F);
+  EXPECT_GT(high - low, 0.07F);
 }
 
 TEST(DenseCloud, FusesARecordingWhosePosesAreOfTheDepthCamera) {

@@ -47,7 +47,7 @@ TEST(GeorefReport, AGoodFitIsATableWithItsDatum) {
 
 TEST(GeorefReport, ASuspectHasItsResidualAndNothingIsWritten) {
   const GeorefSummary s = summary_of(2);
-  EXPECT_FALSE(contains(format_table(s), "written "));
+  EXPECT_FALSE(contains(format_table(s), "written       ")) << format_table(s);
   const auto json = nlohmann::json::parse(format_json(s), nullptr, false);
   ASSERT_EQ(json["points"].size(), 6U);
   EXPECT_EQ(json["points"][2]["verdict"], to_string(PointVerdict::kSuspect));

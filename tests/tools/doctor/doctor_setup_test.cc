@@ -38,8 +38,8 @@ TEST(DoctorSetupTest, AMapThatIsNoneAndASourceThatIsNotThere) {
   expect(check_map(""), Level::kFailure, "none configured", "camloc map build");
   expect(check_map(folder.write("m.cmap", "no map")), Level::kFailure, "m.cmap", "copy it again");
   std::optional<FrameSize> size;
-  expect(check_source("", std::nullopt, &size), Level::kFailure, "none configured", "replay://");
-  expect(check_source("telepathy://", std::nullopt, &size), Level::kFailure, "telepathy", "this build knows");
+  expect(check_source("", std::nullopt, &size), Level::kFailure, "none configured", "camlocd.toml(5)");
+  expect(check_source("telepathy://", std::nullopt, &size), Level::kFailure, "telepathy", "camloc camera list");
   EXPECT_FALSE(size);
   expect(check_source("sample://?width=64&height=48&rate_hz=0", std::nullopt, &size), Level::kOk, "64x48 image, 64x48 depth");
   ASSERT_TRUE(size);

@@ -24,7 +24,7 @@ TEST(SequenceRunTest, EveryFrameIsLocalized) {
   const mapping::SampleRecording recording(8);
   SequenceRunOptions options = options_for(recording);
   options.is_single = true;
-  options.exclude = "3";
+  options.exclude = "3:4";
   auto run = open_sequence_run(options);
   ASSERT_TRUE(run.is_ok()) << run.status().message();
   int num_localized = 0;
@@ -80,6 +80,7 @@ TEST(SequenceRunTest, ACameraOfAnotherSizeIsNamed) {
   const mapping::SampleRecording recording(2);
   RgbdCamera camera = testing::SampleWorld::get().camera();
   camera.color.width = camera.depth.width = 64;
+  camera.color.cx = camera.depth.cx = 31.5;
   SequenceRunOptions options = options_for(recording);
   options.camera_path = recording.folder.write("small.toml", format_camera_toml(camera));
   const auto run = open_sequence_run(options);
