@@ -125,7 +125,7 @@ TEST(ReplaySource, PathsRelativeAndWithSpaces) {
   }
 }
 
-TEST(ReplaySource, RecordedSpeedWaitsAndHonoursTheTimeout) {
+TEST(ReplaySource, SpeedOfTheRecordingWaitsAndHonoursTheTimeout) {
   const TestFolder folder;
   write_7scenes(folder, 3);
   const auto source = open_replay("replay://" + folder.path() + "?speed=1&rate_hz=20");

@@ -21,7 +21,7 @@ void write_recording(const TestFolder& folder, int count) {
   }
 }
 
-TEST(RecordedPosesTest, SelectedFramesWithAPose) {
+TEST(PosesOfARecordingTest, SelectedFramesWithAPose) {
   const TestFolder folder;
   write_recording(folder, 6);
   const auto all = read_recorded_poses(folder.path(), "", std::nullopt);
@@ -36,7 +36,7 @@ TEST(RecordedPosesTest, SelectedFramesWithAPose) {
   EXPECT_EQ(some->poses[1].stamp_ns, all->poses[2].stamp_ns);
 }
 
-TEST(RecordedPosesTest, ThoseOfTheDepthCameraAreMovedToTheColourCamera) {
+TEST(PosesOfARecordingTest, ThoseOfTheDepthCameraAreMovedToTheColourCamera) {
   const TestFolder folder;
   write_recording(folder, 2);
   const Rigid3 T_color_depth{Eigen::Quaterniond(Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY())), {0.025, 0, 0}};
@@ -47,7 +47,7 @@ TEST(RecordedPosesTest, ThoseOfTheDepthCameraAreMovedToTheColourCamera) {
   EXPECT_LT(rotation_distance_rad(poses->poses[1].T_world_camera.rotation, expected.rotation), 1e-9);
 }
 
-TEST(RecordedPosesTest, ErrorsAreThoseOfTheRecordingAndTheSelection) {
+TEST(PosesOfARecordingTest, ErrorsAreThoseOfTheRecordingAndTheSelection) {
   const TestFolder folder;
   write_recording(folder, 2);
   EXPECT_FALSE(read_recorded_poses("/nowhere", "", std::nullopt).is_ok());
