@@ -102,7 +102,9 @@ void ControlSocket::handle(std::span<const pollfd> fds, std::int64_t now_ns, con
 
 void ControlSocket::expire(std::int64_t now_ns) {
   for (Client& client : clients_) {
-    if (client.fd.is_open() && now_ns > client.deadline_ns) close_client(client);
+    if (!client.fd.is_open() || now_ns <= client.deadline_ns) continue;
+    // What it said while the daemon was busy with something else was not read yet: that is not its fault.
+    if (std::exchange(client.is_overdue, true)) close_client(client);
   }
 }
 
@@ -113,6 +115,7 @@ void ControlSocket::accept_clients(std::int64_t now_ns) {
     if (!client.fd.is_open()) return;
     client.num_read = client.num_written = 0;
     client.reply.clear();
+    client.is_overdue = false;
     client.deadline_ns = now_ns + kPatience_ns;
   }
 }

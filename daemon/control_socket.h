@@ -56,6 +56,7 @@ class ControlSocket {
     std::string reply;  // empty until the request is complete
     std::size_t num_written = 0;
     std::int64_t deadline_ns = 0;
+    bool is_overdue = false;  // expire() has seen that once
   };
 
   ControlSocket(std::string path, UniqueFd lock, UniqueFd listener);

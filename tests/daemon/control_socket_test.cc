@@ -126,7 +126,19 @@ TEST_F(ControlSocketTest, SilentClientIsDroppedInTime) {
   turn(ControlSocket::kPatience_ns);
   EXPECT_EQ(hear(client), "");
   turn(ControlSocket::kPatience_ns + 1);
+  EXPECT_EQ(hear(client), "") << "it may have spoken while the daemon was busy";
+  turn(ControlSocket::kPatience_ns + 2);
   EXPECT_EQ(hear(client), "<eof>");
+}
+
+TEST_F(ControlSocketTest, WhoSpokeWhileTheDaemonWasBusyIsAnswered) {
+  const UniqueFd client = connect();
+  turn(0);
+  say(client, "reload\n");
+  socket_->expire(5 * ControlSocket::kPatience_ns);  // a frame took so long
+  turn(5 * ControlSocket::kPatience_ns);
+  EXPECT_EQ(hear(client), "{\"ok\":true}\n<eof>");
+  EXPECT_EQ(num_handled_, 1);
 }
 
 TEST_F(ControlSocketTest, ClientThatDoesNotReadHoldsNobodyUp) {
