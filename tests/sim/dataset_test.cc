@@ -124,7 +124,7 @@ TEST_F(Dataset, AFailingFrameEndsTheRecording) {
 }
 
 TEST_F(Dataset, LidarPointsLieOnStaticSurfaces) {
-  const Scene scene = build_scene(floor_plan(SceneKind::kSmall), {SceneKind::kSmall, 1, 1});
+  const Scene scene = build_scene(floor_plan(SceneKind::kSmall, 1), {SceneKind::kSmall, 1, 1});
   const std::string path = folder_ / "cloud.ply";
   const Result<std::uint64_t> count = write_lidar_ply(path, scene, {.step_m = 0.2, .noise_m = 0.002, .seed = 1});
   ASSERT_TRUE(count.is_ok());

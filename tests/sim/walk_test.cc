@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -15,9 +16,10 @@
 namespace camloc::sim {
 namespace {
 
-class Walks : public ::testing::TestWithParam<std::tuple<SceneKind, std::uint32_t>> {
+/// Kind, day, seed.
+class Walks : public ::testing::TestWithParam<std::tuple<SceneKind, std::uint32_t, std::uint32_t>> {
  protected:
-  World world_ = make_world({std::get<0>(GetParam()), 1, std::get<1>(GetParam())});
+  World world_ = make_world({std::get<0>(GetParam()), std::get<2>(GetParam()), std::get<1>(GetParam())});
 };
 
 TEST_P(Walks, AreSmoothAndUnhurried) {
@@ -60,7 +62,30 @@ TEST_P(Walks, NobodyWalksThroughAWall) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Walks,
-                         ::testing::Combine(::testing::Values(SceneKind::kSmall, SceneKind::kBuilding), ::testing::Values(1U, 2U)));
+                         ::testing::Combine(::testing::Values(SceneKind::kSmall, SceneKind::kBuilding), ::testing::Values(1U, 2U),
+                                            ::testing::Values(1U)));
+INSTANTIATE_TEST_SUITE_P(OtherBuildings, Walks,
+                         ::testing::Combine(::testing::Values(SceneKind::kBuilding), ::testing::Values(1U, 2U),
+                                            ::testing::Values(2U, 3U, 77U)));
+
+TEST(Building, AnotherSeedIsAnotherLayout) {
+  const FloorPlan first = floor_plan(SceneKind::kBuilding, 2), second = floor_plan(SceneKind::kBuilding, 3);
+  EXPECT_GT(std::abs(first.sides[0].length - second.sides[0].length), 0.1);
+  const auto looks = [](const FloorPlan& plan) {
+    std::map<std::uint32_t, int> count;
+    for (const CorridorSide& side : plan.sides)
+      for (const Stretch& stretch : side.stretches) ++count[stretch.look];
+    return count;
+  };
+  for (const auto& [look, count] : looks(first)) EXPECT_FALSE(looks(second).contains(look));
+  for (const FloorPlan& plan : {first, second}) {
+    std::vector<int> repeated;
+    for (const auto& [look, count] : looks(plan))
+      if (count > 1) repeated.push_back(count);
+    std::sort(repeated.begin(), repeated.end());
+    EXPECT_EQ(repeated, (std::vector<int>{2, 3}));
+  }
+}
 
 TEST(Building, TheLoopIsWalkedAllAround) {
   const World world = make_world({SceneKind::kBuilding, 1, 1});
@@ -103,7 +128,7 @@ TEST(Building, LookAlikeStretchesDifferOnlyBySigns) {
 }
 
 TEST(Building, AnotherDayMovesClutterAndNothingElse) {
-  const FloorPlan plan = floor_plan(SceneKind::kSmall);
+  const FloorPlan plan = floor_plan(SceneKind::kSmall, 1);
   const Scene first = build_scene(plan, {SceneKind::kSmall, 1, 1}), second = build_scene(plan, {SceneKind::kSmall, 1, 2});
   std::vector<Eigen::Vector3d> fixed_first, fixed_second, loose_first, loose_second;
   for (const Surface& s : first.surfaces) (s.is_static ? fixed_first : loose_first).push_back(s.origin);

@@ -34,9 +34,7 @@ std::string readme(const DatasetOptions& options, const RgbdCamera& camera, cons
   std::ostringstream out;
   out << "Synthetic RGB-D data set written by camloc-sim.\n\n"
       << "scene           "
-      << (options.kind == SceneKind::kBuilding ? "building: corridor loop 57 x 40 m, nine offices"
-                                               : "small: corridor corner and two offices")
-      << "\n"
+      << (options.kind == SceneKind::kBuilding ? "building: corridor loop, nine offices" : "small: corridor corner and two offices") << "\n"
       << "seed            " << options.seed << "\n"
       << "rate            " << options.recording.rate_hz << " Hz\n"
       << "duration scale  " << options.recording.duration_scale << "\n\n"
@@ -78,7 +76,7 @@ Result<DatasetSummary> write_dataset(const std::string& folder, const DatasetOpt
   }
   if (options.has_lidar) {
     if (progress) progress("lidar", 0, 1);
-    const FloorPlan plan = floor_plan(options.kind);
+    const FloorPlan plan = floor_plan(options.kind, options.seed);
     LidarOptions lidar = options.lidar;
     lidar.seed = options.seed;
     Result<std::uint64_t> points = write_lidar_ply(folder + "/lidar.ply", build_scene(plan, {options.kind, options.seed, 1}), lidar);

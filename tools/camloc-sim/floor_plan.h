@@ -47,6 +47,14 @@ struct FloorPlan {
   bool is_loop = true;
 };
 
+/// What the simulator knows:
+///   building  a closed corridor loop, seed 1 57 x 40 m, walked counter-clockwise (side 0 along +x, 1 along +y, 2 along -x, 3 along
+///             -y), with nine open offices, identical doors, five look-alike stretches of two looks, two blank stretches; another
+///             seed is another building of this kind
+///   small     an L of 10 + 8 m corridor and two offices; a seed changes what is in them
+[[nodiscard]] FloorPlan floor_plan(SceneKind kind, std::uint32_t seed);
+[[nodiscard]] Placement office_place(const FloorPlan& plan, const Office& office);
+
 struct SceneOptions {
   SceneKind kind = SceneKind::kBuilding;
   std::uint32_t seed = 1;

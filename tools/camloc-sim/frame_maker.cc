@@ -42,7 +42,7 @@ RgbdCamera simulated_camera() {
 }
 
 World make_world(const SceneOptions& options) {
-  FloorPlan plan = floor_plan(options.kind);
+  FloorPlan plan = floor_plan(options.kind, options.seed);
   Scene scene = build_scene(plan, options);
   Trajectory trajectory(walk_path(plan, options.kind, options.day), walk_style(options.kind, options.day, options.seed));
   std::vector<Passer> passers = plan_passers(plan, trajectory, options);
