@@ -12,6 +12,7 @@
 namespace camloc::tools {
 
 void add_localize_command(CLI::App& app, int& exit_code);
+void add_wakeup_command(CLI::App& app, int& exit_code);
 void add_eval_command(CLI::App& app, int& exit_code);
 void add_epipolar_command(CLI::App& app, int& exit_code);
 void add_map_command(CLI::App& app, int& exit_code);  ///< info and verify; build is the program camloc-map

@@ -24,11 +24,12 @@ struct Command {
 };
 
 constexpr std::array kCommands{
-    Command{"localize", camloc::tools::add_localize_command}, Command{"eval", camloc::tools::add_eval_command},
-    Command{"epipolar", camloc::tools::add_epipolar_command}, Command{"map", camloc::tools::add_map_command},
-    Command{"camera", camloc::tools::add_camera_command},     Command{"record", camloc::tools::add_record_command},
-    Command{"monitor", camloc::tools::add_monitor_command},   Command{"ctl", camloc::tools::add_ctl_command},
-    Command{"doctor", camloc::tools::add_doctor_command},     Command{"frames", camloc::tools::add_frames_command},
+    Command{"localize", camloc::tools::add_localize_command}, Command{"wakeup", camloc::tools::add_wakeup_command},
+    Command{"eval", camloc::tools::add_eval_command},         Command{"epipolar", camloc::tools::add_epipolar_command},
+    Command{"map", camloc::tools::add_map_command},           Command{"camera", camloc::tools::add_camera_command},
+    Command{"record", camloc::tools::add_record_command},     Command{"monitor", camloc::tools::add_monitor_command},
+    Command{"ctl", camloc::tools::add_ctl_command},           Command{"doctor", camloc::tools::add_doctor_command},
+    Command{"frames", camloc::tools::add_frames_command},
 };
 /// Commands of which a part is built in and the rest is in the program camloc-NAME.
 struct SplitCommand {

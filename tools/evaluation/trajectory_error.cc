@@ -69,6 +69,11 @@ Rigid3 align_by_poses(const EstimatedTrajectory& estimate, const ReferencePose& 
   return points.empty() ? Rigid3{} : align_rigid(points).T_a_b;
 }
 
+bool is_misleading(const Rigid3& reference, const Rigid3& estimate) {
+  return (reference.translation - estimate.translation).norm() > kMisleading.translation_m ||
+         rotation_distance_rad(reference.rotation, estimate.rotation) * 180.0 / std::numbers::pi > kMisleading.rotation_deg;
+}
+
 TrajectoryErrors compare(const EstimatedTrajectory& estimate, const ReferencePose& reference, std::uint64_t num_frames,
                          const std::optional<Rigid3>& T_reference_estimate) {
   TrajectoryErrors errors;
@@ -94,7 +99,7 @@ TrajectoryErrors compare(const EstimatedTrajectory& estimate, const ReferencePos
     for (std::size_t i = 0; i < kErrorLimits.size(); ++i) {
       if (translation_m <= kErrorLimits[i].translation_m && rotation_deg <= kErrorLimits[i].rotation_deg) errors.share_within[i] += 1;
     }
-    if (translation_m > kMisleading.translation_m || rotation_deg > kMisleading.rotation_deg) ++errors.num_misleading;
+    if (is_misleading(pair.reference, pair.estimate)) ++errors.num_misleading;
     if (pair.covariance) all_nees.push_back(nees(pair));
   }
   for (double& share : errors.share_within) share = num_frames == 0 ? 0.0 : share / static_cast<double>(num_frames);

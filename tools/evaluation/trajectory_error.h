@@ -29,6 +29,7 @@ inline constexpr std::array<ErrorLimit, 4> kErrorLimits{
     {{"2cm_2deg", 0.02, 2}, {"5cm_5deg", 0.05, 5}, {"10cm_10deg", 0.10, 10}, {"35cm_10deg", 0.35, 10}}};
 /// A pose given as LOCALIZED and farther off than this misleads.
 inline constexpr ErrorLimit kMisleading{"misleading", 0.25, 10};
+[[nodiscard]] bool is_misleading(const Rigid3& reference, const Rigid3& estimate);
 
 struct TrajectoryErrors {
   std::uint64_t num_frames = 0;     ///< all frames that were tried
