@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "core/features/feature_patch.h"
+#include "core/features/descriptor.h"
 
 namespace camloc {
 

@@ -4,11 +4,16 @@
 
 #include <algorithm>
 #include <bit>
-#include <cassert>
 #include <cstring>
+
+#include "core/features/orb_descriptor.h"
 
 namespace camloc {
 namespace {
+
+constexpr int kThreshold = 20, kMinThreshold = 7;  // grey levels; the lower one for cells without a corner at the other
+constexpr int kCellPx = 32;
+constexpr int kMaxPerCell = 64;  // weaker corners of a cell are dropped
 
 bool is_stronger(const Corner& a, const Corner& b) {
   if (a.score != b.score) return a.score > b.score;
@@ -35,12 +40,10 @@ int first_byte(std::uint64_t bytes) {
 
 }  // namespace
 
-CornerSelector::CornerSelector(int max_width, int max_height, int max_corners, const CornerOptions& options, FastKernel kernel)
-    : options_(options), fast_scores_(fast_scores_function(kernel)) {
-  assert(options.cell_px > 0 && options.border_px >= 4);
+CornerSelector::CornerSelector(int max_width, int max_height, int max_corners) : fast_scores_(available_fast_kernels().back().scores) {
   scores_.allocate(max_width, max_height);
-  const int columns = std::max(0, max_width - 2 * options.border_px + options.cell_px - 1) / options.cell_px;
-  const int rows = std::max(0, max_height - 2 * options.border_px + options.cell_px - 1) / options.cell_px;
+  const int columns = std::max(0, max_width - 2 * kOrbBorder + kCellPx - 1) / kCellPx;
+  const int rows = std::max(0, max_height - 2 * kOrbBorder + kCellPx - 1) / kCellPx;
   const std::size_t num_cells = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   cells_.reserve(num_cells);
   corner_of_cell_.resize(num_cells * kMaxPerCell);
@@ -51,18 +54,15 @@ std::span<const Corner> CornerSelector::select(const PaddedImage& level, int cou
   selected_.clear();
   lay_out_cells(level);
   if (cells_.empty() || count <= 0) return selected_;
-  const int border = options_.border_px;
-  score(level, border, border, level.width - border, level.height - border, options_.threshold);
-  collect(border, border, level.width - border, level.height - border);
-  if (options_.min_threshold < options_.threshold) {
-    // All empty cells are scored before any is searched, so that the result does not depend on their order.
-    for (Cell& cell : cells_) {
-      cell.is_weak = cell.count == 0;
-      if (cell.is_weak) score(level, cell.x0, cell.y0, cell.x1, cell.y1, options_.min_threshold);
-    }
-    for (const Cell& cell : cells_)
-      if (cell.is_weak) collect(cell.x0, cell.y0, cell.x1, cell.y1);
+  score(level, kOrbBorder, kOrbBorder, level.width - kOrbBorder, level.height - kOrbBorder, kThreshold);
+  collect(kOrbBorder, kOrbBorder, level.width - kOrbBorder, level.height - kOrbBorder);
+  // All empty cells are scored before any is searched, so that the result does not depend on their order.
+  for (Cell& cell : cells_) {
+    cell.is_weak = cell.count == 0;
+    if (cell.is_weak) score(level, cell.x0, cell.y0, cell.x1, cell.y1, kMinThreshold);
   }
+  for (const Cell& cell : cells_)
+    if (cell.is_weak) collect(cell.x0, cell.y0, cell.x1, cell.y1);
   for (Cell& cell : cells_) std::sort(cell.corners, cell.corners + cell.count, is_stronger);
   take_evenly(count);
   return selected_;
@@ -70,7 +70,7 @@ std::span<const Corner> CornerSelector::select(const PaddedImage& level, int cou
 
 void CornerSelector::lay_out_cells(const PaddedImage& level) {
   cells_.clear();
-  const int border = options_.border_px, side = options_.cell_px;
+  constexpr int border = kOrbBorder, side = kCellPx;
   if (level.width <= 2 * border || level.height <= 2 * border) return;
   Corner* corners = corner_of_cell_.data();
   columns_ = (level.width - 2 * border + side - 1) / side;
@@ -89,7 +89,7 @@ void CornerSelector::score(const PaddedImage& level, int x0, int y0, int x1, int
 }
 
 void CornerSelector::collect(int x0, int y0, int x1, int y1) {
-  const int border = options_.border_px, side = options_.cell_px;
+  constexpr int border = kOrbBorder, side = kCellPx;
   for (int y = y0; y < y1; ++y) {
     const std::uint8_t* row = scores_.row(y);
     Cell* cells = cells_.data() + static_cast<std::ptrdiff_t>((y - border) / side) * columns_;
@@ -113,7 +113,6 @@ void CornerSelector::add(Cell* cell, Corner corner) {
     cell->corners[cell->count++] = corner;
     return;
   }
-  ++num_clipped_;
   Corner* weakest = std::max_element(cell->corners, cell->corners + kMaxPerCell, is_stronger);
   if (is_stronger(corner, *weakest)) *weakest = corner;
 }

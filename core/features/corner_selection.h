@@ -19,24 +19,13 @@ struct Corner {
   std::uint8_t score = 0;     ///< FAST score
 };
 
-struct CornerOptions {
-  int threshold = 20;
-  int min_threshold = 7;  ///< for cells without a corner at `threshold`
-  int cell_px = 32;
-  int border_px = 19;  ///< no corners closer to the border of the level
-};
-
 /// Allocates at construction only. Not thread-safe.
 class CornerSelector {
  public:
   /// Levels given to select() are at most this large, and at most `max_corners` are asked for.
-  CornerSelector(int max_width, int max_height, int max_corners, const CornerOptions& options, FastKernel kernel = best_fast_kernel());
+  CornerSelector(int max_width, int max_height, int max_corners);
   /// At most `count` corners, ordered by row, then column; valid until the next call.
   std::span<const Corner> select(const PaddedImage& level, int count);
-  /// Corners dropped because their cell already held kMaxPerCell stronger ones, since construction.
-  [[nodiscard]] std::uint64_t num_clipped() const { return num_clipped_; }
-
-  static constexpr int kMaxPerCell = 64;
 
  private:
   struct Cell {
@@ -51,14 +40,12 @@ class CornerSelector {
   void add(Cell* cell, Corner corner);
   void take_evenly(int count);
 
-  CornerOptions options_;
   FastScoresFunction fast_scores_;
   PaddedImage scores_;
   std::vector<Cell> cells_;  ///< row by row
   int columns_ = 0;          ///< of cells
   std::vector<Corner> corner_of_cell_;
   std::vector<Corner> selected_;
-  std::uint64_t num_clipped_ = 0;
 };
 
 }  // namespace camloc

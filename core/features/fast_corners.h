@@ -12,19 +12,17 @@
 
 namespace camloc {
 
-enum class FastKernel : std::uint8_t { kScalar, kSse2, kAvx2 };
-
-[[nodiscard]] const char* to_string(FastKernel kernel);
-/// Kernels this processor can run, slowest first.
-[[nodiscard]] std::vector<FastKernel> available_fast_kernels();
-[[nodiscard]] FastKernel best_fast_kernel();
-
 /// Scores of `count` pixels from `pixels` on: scores[i] is the score of pixels[i] if it is a corner at `threshold` (>= 1),
 /// else 0. Reads three pixels around and up to 35 pixels past the last one in each of the seven rows; writes count scores
 /// and nothing else. All kernels give the same scores.
 using FastScoresFunction = void (*)(const std::uint8_t* pixels, std::ptrdiff_t stride, int count, int threshold, std::uint8_t* scores);
 
-/// The kernel must be available.
-[[nodiscard]] FastScoresFunction fast_scores_function(FastKernel kernel);
+struct FastKernel {
+  const char* name;
+  FastScoresFunction scores;
+};
+
+/// Kernels this processor can run, slowest first.
+[[nodiscard]] std::vector<FastKernel> available_fast_kernels();
 
 }  // namespace camloc

@@ -6,6 +6,8 @@
 #include <cassert>
 #include <cstring>
 
+#include "core/base/avx2.h"
+
 namespace camloc {
 namespace {
 
@@ -14,19 +16,19 @@ constexpr int kRadius = 3;
 constexpr float kWeights[4] = {0.21610594100794114F, 0.19071282356963737F, 0.131074878967366F, 0.07015932695902607F};
 
 /// Weighted sum of the centre and of the three pairs beside it. One order of operations for all kernels.
-[[gnu::always_inline]] inline float weighted(float centre, float pair1, float pair2, float pair3) {
+CAMLOC_INLINE float weighted(float centre, float pair1, float pair2, float pair3) {
   return (centre * kWeights[0] + pair1 * kWeights[1]) + (pair2 * kWeights[2] + pair3 * kWeights[3]);
 }
 
 /// `p` starts three pixels before the first of the row.
-[[gnu::always_inline]] inline void across_row(const std::uint8_t* __restrict p, int width, float* __restrict out) {
+CAMLOC_INLINE void across_row(const std::uint8_t* __restrict p, int width, float* __restrict out) {
   for (int x = 0; x < width; ++x)
     out[x] = weighted(p[x + 3], static_cast<float>(p[x + 2] + p[x + 4]), static_cast<float>(p[x + 1] + p[x + 5]),
                       static_cast<float>(p[x] + p[x + 6]));
 }
 
 /// Rounds half to even: adding 1.5 * 2^23 leaves the integer in the low bits.
-[[gnu::always_inline]] inline void down_columns(const float* const* rows, int width, std::uint8_t* __restrict out) {
+CAMLOC_INLINE void down_columns(const float* const* rows, int width, std::uint8_t* __restrict out) {
   const float* __restrict a = rows[0], * __restrict b = rows[1], * __restrict c = rows[2], * __restrict d = rows[3];
   const float* __restrict e = rows[4], * __restrict f = rows[5], * __restrict g = rows[6];
   for (int x = 0; x < width; ++x) {
@@ -38,12 +40,8 @@ constexpr float kWeights[4] = {0.21610594100794114F, 0.19071282356963737F, 0.131
 // The same loops compiled for the baseline and for AVX2; the compiler vectorizes them.
 void across_row_any(const std::uint8_t* p, int width, float* out) { across_row(p, width, out); }
 void down_columns_any(const float* const* rows, int width, std::uint8_t* out) { down_columns(rows, width, out); }
-#if defined(__x86_64__)
-__attribute__((target("avx2"))) void across_row_avx2(const std::uint8_t* p, int width, float* out) { across_row(p, width, out); }
-__attribute__((target("avx2"))) void down_columns_avx2(const float* const* rows, int width, std::uint8_t* out) {
-  down_columns(rows, width, out);
-}
-#endif
+CAMLOC_AVX2 void across_row_avx2(const std::uint8_t* p, int width, float* out) { across_row(p, width, out); }
+CAMLOC_AVX2 void down_columns_avx2(const float* const* rows, int width, std::uint8_t* out) { down_columns(rows, width, out); }
 
 /// Index of the pixel that stands for index `i` of a row of n: ... 2 1 | 0 1 2 ... n-1 | n-2 ...
 int mirrored_index(int i, int n) {
@@ -55,14 +53,9 @@ int mirrored_index(int i, int n) {
 }  // namespace
 
 GaussianBlur::GaussianBlur(int max_width)
-    : across_row_(across_row_any),
-      down_columns_(down_columns_any),
-      mirrored_(static_cast<std::size_t>(max_width + 2 * kRadius + PaddedImage::kPadding)),
+    : mirrored_(static_cast<std::size_t>(max_width + 2 * kRadius + PaddedImage::kPadding)),
       ring_stride_(static_cast<std::size_t>(max_width + PaddedImage::kPadding)) {
   ring_.resize(8 * ring_stride_);
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) across_row_ = across_row_avx2, down_columns_ = down_columns_avx2;
-#endif
 }
 
 void GaussianBlur::blur_row(const PaddedImage& src, int y, float* out) {
@@ -72,19 +65,21 @@ void GaussianBlur::blur_row(const PaddedImage& src, int y, float* out) {
     mirrored_[static_cast<std::size_t>(kRadius + src.width - 1 + i)] = row[mirrored_index(src.width - 1 + i, src.width)];
   }
   std::memcpy(mirrored_.data() + kRadius, row, static_cast<std::size_t>(src.width));
-  across_row_(mirrored_.data(), src.width, out);
+  static const auto across = has_avx2() ? across_row_avx2 : across_row_any;
+  across(mirrored_.data(), src.width, out);
 }
 
-void GaussianBlur::apply(const PaddedImage& src, int first_row, int last_row, PaddedImage* dst) {
+void GaussianBlur::apply(const PaddedImage& src, PaddedImage* dst) {
+  static const auto down = has_avx2() ? down_columns_avx2 : down_columns_any;
   assert(src.width == dst->width && src.height == dst->height);
   const auto ring_row = [&](int y) { return ring_.data() + static_cast<std::size_t>((y + 8) & 7) * ring_stride_; };
   // Row y of the ring may lie outside the image (-3 .. height + 2); its pixels are those of the mirrored row.
-  for (int y = first_row - kRadius; y < first_row + kRadius; ++y) blur_row(src, mirrored_index(y, src.height), ring_row(y));
-  for (int y = first_row; y < last_row; ++y) {
+  for (int y = -kRadius; y < kRadius; ++y) blur_row(src, mirrored_index(y, src.height), ring_row(y));
+  for (int y = 0; y < src.height; ++y) {
     blur_row(src, mirrored_index(y + kRadius, src.height), ring_row(y + kRadius));
     const float* rows[7];
     for (int k = 0; k < 7; ++k) rows[k] = ring_row(y - kRadius + k);
-    down_columns_(rows, src.width, dst->row(y));
+    down(rows, src.width, dst->row(y));
   }
 }
 

@@ -18,14 +18,12 @@ namespace camloc {
 class GaussianBlur {
  public:
   explicit GaussianBlur(int max_width);
-  /// Rows [first_row, last_row) of the smoothed `src` into `dst`, which has the same size.
-  void apply(const PaddedImage& src, int first_row, int last_row, PaddedImage* dst);
+  /// The smoothed `src` into `dst`, which has the same size.
+  void apply(const PaddedImage& src, PaddedImage* dst);
 
  private:
   void blur_row(const PaddedImage& src, int y, float* out);
 
-  void (*across_row_)(const std::uint8_t* p, int width, float* out);
-  void (*down_columns_)(const float* const* rows, int width, std::uint8_t* out);
   std::vector<std::uint8_t> mirrored_;  ///< one row with three mirrored pixels on both sides
   std::vector<float> ring_;             ///< eight horizontally smoothed rows
   std::size_t ring_stride_;

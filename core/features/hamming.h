@@ -7,18 +7,13 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "core/features/descriptor.h"
 
 namespace camloc {
 
-enum class HammingKernel : std::uint8_t { kScalar, kPopcnt, kAvx2, kAvx512, kNeon };
-
-[[nodiscard]] const char* to_string(HammingKernel kernel);
-/// Kernels this processor can run, slowest first.
-[[nodiscard]] std::vector<HammingKernel> available_hamming_kernels();
-[[nodiscard]] HammingKernel best_hamming_kernel();
+/// Of the kernel in use, for people.
+[[nodiscard]] const char* hamming_kernel_name();
 
 /// Number of differing bits, 0..256.
 [[nodiscard]] int hamming_distance(const Descriptor& a, const Descriptor& b);
@@ -35,8 +30,4 @@ struct NearestDescriptor {
 /// Nearest train descriptor of every query. `nearest` has at least queries.size() entries. Works in tiles of `train` that
 /// stay in the L2 cache with several queries per load.
 void nearest_descriptors(std::span<const Descriptor> queries, std::span<const Descriptor> train, NearestDescriptor* nearest);
-/// The same with a kernel of the caller's choice (tests, benchmarks); the kernel must be available.
-void nearest_descriptors(std::span<const Descriptor> queries, std::span<const Descriptor> train, NearestDescriptor* nearest,
-                         HammingKernel kernel);
-
 }  // namespace camloc

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "core/features/descriptor.h"
 #include "core/features/hamming.h"
@@ -38,6 +40,7 @@ inline std::uint64_t make_key(std::uint32_t distance, std::uint32_t index) { ret
 inline constexpr std::size_t kMaxQueriesPerCall = 64;
 
 struct Kernels {
+  const char* name;
   int (*distance)(const Descriptor& a, const Descriptor& b);
   void (*distances)(const Descriptor& query, const Descriptor* train, std::size_t num_train, std::uint16_t* distances);
   /// Distance from `query` to train[index[i]], i < count.
@@ -47,13 +50,21 @@ struct Kernels {
   void (*nearest)(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train, TopTwo* top);
 };
 
-/// Loops over pairs with a distance function: the kernels that have nothing better, and the tails of those that have.
-template <typename Distance>
-inline void nearest_by_pairs(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t begin,
-                             std::size_t end, TopTwo* top, Distance distance) {
-  for (std::size_t q = 0; q < num_queries; ++q)
-    for (std::size_t i = begin; i < end; ++i)
-      top[q].add(make_key(static_cast<std::uint32_t>(distance(queries[q], train[i])), static_cast<std::uint32_t>(i)));
+/// A table of loops over pairs, for kernels that have nothing better than the distance of one pair.
+template <int (*kDistance)(const Descriptor&, const Descriptor&)>
+constexpr Kernels kernels_by_pairs(const char* name) {
+  return {name, kDistance,
+          [](const Descriptor& query, const Descriptor* train, std::size_t num_train, std::uint16_t* distances) {
+            for (std::size_t i = 0; i < num_train; ++i) distances[i] = static_cast<std::uint16_t>(kDistance(query, train[i]));
+          },
+          [](const Descriptor& query, const Descriptor* train, const std::uint32_t* index, std::size_t count, std::uint16_t* distances) {
+            for (std::size_t i = 0; i < count; ++i) distances[i] = static_cast<std::uint16_t>(kDistance(query, train[index[i]]));
+          },
+          [](const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train, TopTwo* top) {
+            for (std::size_t q = 0; q < num_queries; ++q)
+              for (std::size_t i = 0; i < num_train; ++i)
+                top[q].add(make_key(static_cast<std::uint32_t>(kDistance(queries[q], train[i])), static_cast<std::uint32_t>(i)));
+          }};
 }
 
 /// Smallest of `count` distances; 257 of none. Signed, because baseline x86-64 has a vector minimum for signed 16-bit numbers
@@ -64,22 +75,23 @@ inline std::uint16_t smallest(const std::uint16_t* distances, std::size_t count)
   return static_cast<std::uint16_t>(minimum);
 }
 
-extern const Kernels kScalarKernels;
 #if defined(__x86_64__)
 extern const Kernels kPopcntKernels;
 extern const Kernels kAvx2Kernels;
 extern const Kernels kAvx512Kernels;
-#elif defined(__aarch64__)
-extern const Kernels kNeonKernels;
 #endif
 
-/// The table of a kernel that is available on this processor.
-const Kernels& kernels_of(HammingKernel kernel);
+/// The tables that this processor can run, slowest first. The first is the portable one.
+[[nodiscard]] std::vector<const Kernels*> available_kernels();
 /// The table of the fastest kernel.
 const Kernels& best_kernels();
 
 /// Nearest and second nearest with both indices, for callers that care whom the second belongs to.
 void nearest_two(const Kernels& kernels, const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train,
                  TopTwo* top);
+
+/// nearest_descriptors() with these kernels.
+void nearest_descriptors(const Kernels& kernels, std::span<const Descriptor> queries, std::span<const Descriptor> train,
+                         NearestDescriptor* nearest);
 
 }  // namespace camloc::hamming

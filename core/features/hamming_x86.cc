@@ -13,11 +13,15 @@
 #include <immintrin.h>
 
 #include <algorithm>
+#include <cstring>
 
+#include "core/base/avx2.h"
 #include "core/features/hamming_kernels.h"
 
 namespace camloc::hamming {
 namespace {
+
+#define CAMLOC_POPCNT __attribute__((target("popcnt")))
 
 /// Positions within a segment fit the low 16 bits of a lane key. The last value is left out, so that no real key is all ones.
 constexpr std::size_t kSegment = 65536 - 512;
@@ -35,24 +39,23 @@ struct alignas(64) LaneKeys {
   std::uint32_t second[16];
 };
 
-__attribute__((target("popcnt"))) inline int distance_popcnt(const Descriptor& a, const Descriptor& b) {
+CAMLOC_POPCNT inline int distance_popcnt(const Descriptor& a, const Descriptor& b) {
   return static_cast<int>(_mm_popcnt_u64(a.bits[0] ^ b.bits[0]) + _mm_popcnt_u64(a.bits[1] ^ b.bits[1]) +
                           _mm_popcnt_u64(a.bits[2] ^ b.bits[2]) + _mm_popcnt_u64(a.bits[3] ^ b.bits[3]));
 }
 
-__attribute__((target("popcnt"))) void distances_popcnt(const Descriptor& query, const Descriptor* train, std::size_t num_train,
-                                                        std::uint16_t* distances) {
+CAMLOC_POPCNT void distances_popcnt(const Descriptor& query, const Descriptor* train, std::size_t num_train, std::uint16_t* distances) {
   for (std::size_t i = 0; i < num_train; ++i) distances[i] = static_cast<std::uint16_t>(distance_popcnt(query, train[i]));
 }
 
-__attribute__((target("popcnt"))) void distances_at_popcnt(const Descriptor& query, const Descriptor* train, const std::uint32_t* index,
-                                                           std::size_t count, std::uint16_t* distances) {
+CAMLOC_POPCNT void distances_at_popcnt(const Descriptor& query, const Descriptor* train, const std::uint32_t* index, std::size_t count,
+                                       std::uint16_t* distances) {
   const Descriptor q = query;  // stays in registers: `distances` might alias it
   for (std::size_t i = 0; i < count; ++i) distances[i] = static_cast<std::uint16_t>(distance_popcnt(q, train[index[i]]));
 }
 
-__attribute__((target("popcnt"))) void nearest_range_popcnt(const Descriptor* queries, std::size_t num_queries, const Descriptor* train,
-                                                            std::size_t begin, std::size_t end, TopTwo* top) {
+CAMLOC_POPCNT void nearest_range_popcnt(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t begin,
+                                        std::size_t end, TopTwo* top) {
   for (std::size_t q = 0; q < num_queries; ++q)
     for (std::size_t i = begin; i < end; ++i)
       top[q].add(make_key(static_cast<std::uint32_t>(distance_popcnt(queries[q], train[i])), static_cast<std::uint32_t>(i)));
@@ -65,13 +68,6 @@ void nearest_popcnt(const Descriptor* queries, std::size_t num_queries, const De
 void transpose(const Descriptor* train, std::size_t count, Transposed* out) {
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t k = 0; k < 4; ++k) out->words[i / 8][k][i % 8] = train[i].bits[k];
-}
-
-void reset(LaneKeys* keys, std::size_t count) {
-  for (std::size_t q = 0; q < count; ++q) {
-    std::fill_n(keys[q].best, 16, 0xffffffffU);
-    std::fill_n(keys[q].second, 16, 0xffffffffU);
-  }
 }
 
 /// Adds the lane keys of a segment that starts at train index `base` to the result.
@@ -89,34 +85,31 @@ void reduce(const LaneKeys& keys, std::size_t base, TopTwo* top) {
 using ChunkFunction = void (*)(const Descriptor* queries, const Transposed& chunk, std::size_t count, std::uint32_t position,
                                LaneKeys* keys);
 
-void nearest_in_chunks(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train, TopTwo* top,
-                       ChunkFunction chunk_function) {
+template <ChunkFunction kChunkFunction>
+void nearest_in_chunks(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train, TopTwo* top) {
   Transposed chunk;
   LaneKeys keys[kMaxQueriesPerCall];
-  Descriptor padded[kQueriesPerLoad];
+  Descriptor padded[kMaxQueriesPerCall];
+  static_assert(kMaxQueriesPerCall % kQueriesPerLoad == 0);
+  std::copy_n(queries, num_queries, padded);
   const std::size_t whole = num_train / 16 * 16;
-  const std::size_t full_queries = num_queries / kQueriesPerLoad * kQueriesPerLoad;
-  for (std::size_t q = full_queries; q < num_queries; ++q) padded[q - full_queries] = queries[q];
-  LaneKeys padded_keys[kQueriesPerLoad];
   for (std::size_t base = 0; base < whole; base += kSegment) {
     const std::size_t segment_end = std::min(whole, base + kSegment);
-    reset(keys, full_queries);
-    reset(padded_keys, kQueriesPerLoad);
+    std::memset(keys, 0xff, sizeof(keys));  // no key yet
     for (std::size_t begin = base; begin < segment_end; begin += kChunk) {
       const std::size_t count = std::min(kChunk, segment_end - begin);
-      const auto position = static_cast<std::uint32_t>(begin - base);
       transpose(train + begin, count, &chunk);
-      for (std::size_t q = 0; q < full_queries; q += kQueriesPerLoad) chunk_function(queries + q, chunk, count, position, keys + q);
-      if (full_queries < num_queries) chunk_function(padded, chunk, count, position, padded_keys);
+      for (std::size_t q = 0; q < num_queries; q += kQueriesPerLoad)
+        kChunkFunction(padded + q, chunk, count, static_cast<std::uint32_t>(begin - base), keys + q);
     }
-    for (std::size_t q = 0; q < num_queries; ++q) reduce(q < full_queries ? keys[q] : padded_keys[q - full_queries], base, &top[q]);
+    for (std::size_t q = 0; q < num_queries; ++q) reduce(keys[q], base, &top[q]);
   }
   nearest_range_popcnt(queries, num_queries, train, whole, num_train, top);
 }
 
 // ---- AVX2: population count by nibble table (Mula, Kurz, Lemire, "Faster population counts using AVX2", 2017) ----
 
-__attribute__((target("avx2"), always_inline)) inline __m256i count_bytes(__m256i x) {
+CAMLOC_AVX2 CAMLOC_INLINE __m256i count_bytes(__m256i x) {
   const __m256i table = _mm256_setr_epi8(0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4,  //
                                          0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4);
   const __m256i nibble = _mm256_set1_epi8(15);
@@ -126,8 +119,7 @@ __attribute__((target("avx2"), always_inline)) inline __m256i count_bytes(__m256
 }
 
 /// Distances of four descriptors (half a transposed group) to a query whose words are broadcast, as 64-bit lanes.
-__attribute__((target("avx2"), always_inline)) inline __m256i distances_of_four(const std::uint64_t (&group)[4][8], int half,
-                                                                                const __m256i* query) {
+CAMLOC_AVX2 CAMLOC_INLINE __m256i distances_of_four(const std::uint64_t (&group)[4][8], int half, const __m256i* query) {
   __m256i sum = _mm256_setzero_si256();
   for (int k = 0; k < 4; ++k) {
     const __m256i word = _mm256_load_si256(reinterpret_cast<const __m256i*>(&group[k][half * 4]));
@@ -136,8 +128,7 @@ __attribute__((target("avx2"), always_inline)) inline __m256i distances_of_four(
   return _mm256_sad_epu8(sum, _mm256_setzero_si256());
 }
 
-__attribute__((target("avx2"))) void chunk_avx2(const Descriptor* queries, const Transposed& chunk, std::size_t count,
-                                                std::uint32_t position, LaneKeys* keys) {
+CAMLOC_AVX2 void chunk_avx2(const Descriptor* queries, const Transposed& chunk, std::size_t count, std::uint32_t position, LaneKeys* keys) {
   for (std::size_t q = 0; q < kQueriesPerLoad; ++q) {
     __m256i query[4];
     for (int k = 0; k < 4; ++k) query[k] = _mm256_set1_epi64x(static_cast<long long>(queries[q].bits[k]));
@@ -158,10 +149,6 @@ __attribute__((target("avx2"))) void chunk_avx2(const Descriptor* queries, const
     _mm256_store_si256(reinterpret_cast<__m256i*>(keys[q].best), best);
     _mm256_store_si256(reinterpret_cast<__m256i*>(keys[q].second), second);
   }
-}
-
-void nearest_avx2(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train, TopTwo* top) {
-  nearest_in_chunks(queries, num_queries, train, num_train, top, chunk_avx2);
 }
 
 // ---- AVX-512 with VPOPCNTDQ ----
@@ -224,17 +211,11 @@ CAMLOC_AVX512 void distances_avx512(const Descriptor& query, const Descriptor* t
   for (; i < num_train; ++i) distances[i] = static_cast<std::uint16_t>(distance_popcnt(query, train[i]));
 }
 
-void nearest_avx512(const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train, TopTwo* top) {
-  nearest_in_chunks(queries, num_queries, train, num_train, top, chunk_avx512);
-}
-
-#undef CAMLOC_AVX512
-
 }  // namespace
 
-const Kernels kPopcntKernels{distance_popcnt, distances_popcnt, distances_at_popcnt, nearest_popcnt};
-const Kernels kAvx2Kernels{distance_popcnt, distances_popcnt, distances_at_popcnt, nearest_avx2};
-const Kernels kAvx512Kernels{distance_popcnt, distances_avx512, distances_at_popcnt, nearest_avx512};
+const Kernels kPopcntKernels{"popcnt", distance_popcnt, distances_popcnt, distances_at_popcnt, nearest_popcnt};
+const Kernels kAvx2Kernels{"avx2", distance_popcnt, distances_popcnt, distances_at_popcnt, nearest_in_chunks<chunk_avx2>};
+const Kernels kAvx512Kernels{"avx512", distance_popcnt, distances_avx512, distances_at_popcnt, nearest_in_chunks<chunk_avx512>};
 
 }  // namespace camloc::hamming
 #endif

@@ -11,6 +11,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/base/avx2.h"
+
 namespace camloc {
 namespace {
 
@@ -63,8 +65,7 @@ std::vector<ResizeBlock> make_blocks(const std::vector<ResizeTap>& taps) {
 }
 
 /// Writes whole blocks: up to 15 columns more than there are.
-__attribute__((target("avx2"))) void resize_row_avx2(const std::uint8_t* src, const ResizeBlock* blocks, std::size_t num_blocks,
-                                                     std::uint16_t* dst) {
+CAMLOC_AVX2 void resize_row_avx2(const std::uint8_t* src, const ResizeBlock* blocks, std::size_t num_blocks, std::uint16_t* dst) {
   for (std::size_t i = 0; i < num_blocks; ++i, dst += 16) {
     const ResizeBlock& block = blocks[i];
     const __m128i low = _mm_loadu_si128(reinterpret_cast<const __m128i*>(src + block.offset[0]));
@@ -80,8 +81,7 @@ __attribute__((target("avx2"))) void resize_row_avx2(const std::uint8_t* src, co
 }
 
 /// Sixteen pixels as 16-bit lanes. Rows are made signed for the multiplication; the offset comes back with the rounding.
-__attribute__((target("avx2"), always_inline)) inline __m256i mix_sixteen(const std::uint16_t* first, const std::uint16_t* second,
-                                                                          __m256i weights) {
+CAMLOC_AVX2 CAMLOC_INLINE __m256i mix_sixteen(const std::uint16_t* first, const std::uint16_t* second, __m256i weights) {
   const __m256i sign = _mm256_set1_epi16(-32768), rounding = _mm256_set1_epi32(256 * 32768 + 32768);
   const __m256i a = _mm256_xor_si256(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(first)), sign);
   const __m256i b = _mm256_xor_si256(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(second)), sign);
@@ -91,8 +91,8 @@ __attribute__((target("avx2"), always_inline)) inline __m256i mix_sixteen(const 
 }
 
 /// Reads and writes up to 31 columns more than `width`; rows are padded.
-__attribute__((target("avx2"))) void mix_rows_avx2(const std::uint16_t* first, const std::uint16_t* second, std::uint32_t weight, int width,
-                                                   std::uint8_t* dst) {
+CAMLOC_AVX2 void mix_rows_avx2(const std::uint16_t* first, const std::uint16_t* second, std::uint32_t weight, int width,
+                               std::uint8_t* dst) {
   const __m256i weights = _mm256_set1_epi32(static_cast<int>(weight << 16 | (256 - weight)));
   for (int x = 0; x < width; x += 32) {
     const __m256i low = mix_sixteen(first + x, second + x, weights), high = mix_sixteen(first + x + 16, second + x + 16, weights);
@@ -115,7 +115,7 @@ ExactResize::ExactResize(int src_width, int src_height, int dst_width, int dst_h
     : columns_(make_taps(src_width, dst_width)), rows_(make_taps(src_height, dst_height)) {
   for (auto& buffer : row_buffer_) buffer.resize(static_cast<std::size_t>(dst_width + PaddedImage::kPadding));
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) blocks_ = make_blocks(columns_);
+  if (has_avx2()) blocks_ = make_blocks(columns_);
 #endif
 }
 
@@ -156,7 +156,6 @@ ImagePyramid::ImagePyramid(int width, int height, int num_levels, float scale_fa
     const int level_width = static_cast<int>(std::lrint(static_cast<float>(width) / scale));
     const int level_height = static_cast<int>(std::lrint(static_cast<float>(height) / scale));
     if (level_width < 1 || level_height < 1) break;
-    scales_.push_back(scale);
     levels_.emplace_back().allocate(level_width, level_height);
     if (level > 0) {
       const PaddedImage& previous = levels_[levels_.size() - 2];

@@ -22,7 +22,6 @@ struct PaddedImage {
   void allocate(int new_width, int new_height);
   [[nodiscard]] std::uint8_t* row(int y) { return pixels.data() + static_cast<std::ptrdiff_t>(y) * stride; }
   [[nodiscard]] const std::uint8_t* row(int y) const { return pixels.data() + static_cast<std::ptrdiff_t>(y) * stride; }
-  [[nodiscard]] ImageView<std::uint8_t> view() const { return {pixels.data(), width, height, stride}; }
 };
 
 /// Where a destination pixel comes from along one axis: (src[offset] * (256 - weight) + src[offset + 1] * weight) / 256.
@@ -60,8 +59,6 @@ class ImagePyramid {
 
   [[nodiscard]] int num_levels() const { return static_cast<int>(levels_.size()); }
   [[nodiscard]] const PaddedImage& level(int level) const { return levels_[static_cast<std::size_t>(level)]; }
-  /// scale_factor ^ level
-  [[nodiscard]] float scale(int level) const { return scales_[static_cast<std::size_t>(level)]; }
   /// Where column x and row y of a level lie on level 0, pixel centres at integers. Sizes are rounded to whole pixels, so that the
   /// ratio of two levels is not quite the scale factor: on the coarsest of eight levels of 640 pixels that is 1.4 px at the edge.
   [[nodiscard]] float column_on_base(int level, float x) const { return (x + 0.5F) * ratio(level, &PaddedImage::width) - 0.5F; }
@@ -75,7 +72,6 @@ class ImagePyramid {
   }
 
   std::vector<PaddedImage> levels_;
-  std::vector<float> scales_;
   std::vector<ExactResize> resizes_;  ///< resizes_[i] makes level i + 1 from level i
 };
 

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// Buckets of features, and matching guided by a predicted pose.
 #include "core/features/matcher.h"
 
 #include <algorithm>
@@ -83,7 +81,7 @@ GuidedMatcher::GuidedMatcher(const GuidedMatcherOptions& options, int max_featur
       window_(static_cast<std::size_t>(max_features)),
       distances_(static_cast<std::size_t>(max_features)),
       appearance_distances_(static_cast<std::size_t>(max_features)) {
-  matches_.reserve(static_cast<std::size_t>(std::max(0, options.max_matches)));
+  matches_.reserve(static_cast<std::size_t>(max_features));
 }
 
 void GuidedMatcher::collect_window(const FeatureGrid& grid, const ProjectedLandmark& landmark) {
@@ -166,7 +164,7 @@ std::span<const Match> GuidedMatcher::match(const Features& features, const Feat
   }
   matches_.clear();
   for (const Match& match : best_of_feature_)
-    if (match.feature >= 0 && matches_.size() < matches_.capacity()) matches_.push_back(match);
+    if (match.feature >= 0) matches_.push_back(match);
   return matches_;
 }
 

@@ -58,7 +58,6 @@ struct ProjectedLandmark {
 struct GuidedMatcherOptions {
   int max_distance = 64;   ///< of 256 bits
   double max_ratio = 0.9;  ///< best / second best feature in the window on a nearby level; 1 = off
-  int max_matches = 2000;  ///< buffer size
 };
 
 /// Best feature in the window of each projected landmark; a feature claimed by several landmarks goes to the closest

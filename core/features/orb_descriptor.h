@@ -21,7 +21,7 @@ inline constexpr int kOrbBorder = 19;
 /// Descriptor of the smoothed image around `centre`, turned by the angle.
 [[nodiscard]] Descriptor orb_descriptor(const std::uint8_t* centre, std::ptrdiff_t stride, float angle_deg);
 
-/// atan2 in degrees, [0, 360]: polynomial of degree 7, error below 0.3 degrees, the values of cv::fastAtan2.
-[[nodiscard]] float fast_atan2_deg(float y, float x);
+/// The same in radians, [0, 2 pi).
+[[nodiscard]] float orb_angle_rad(float angle_deg);
 
 }  // namespace camloc

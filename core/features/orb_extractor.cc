@@ -1,15 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Level by level: corners spread over a grid (corner_selection), the level smoothed (gaussian_blur), then orientation and descriptor
+// of each corner (orb_descriptor).
 #include "core/features/orb_extractor.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
-#include <numbers>
 
-#include "core/features/corner_selection.h"
-#include "core/features/gaussian_blur.h"
-#include "core/features/image_pyramid.h"
 #include "core/features/orb_descriptor.h"
 
 namespace camloc {
@@ -30,140 +28,62 @@ std::vector<int> features_per_level(int num_features, int num_levels, float scal
   return share;
 }
 
-float radians_from_degrees(float angle_deg) {
-  const float angle_rad = angle_deg * static_cast<float>(std::numbers::pi / 180.0);
-  return angle_rad < static_cast<float>(2 * std::numbers::pi) ? angle_rad : 0.F;
-}
-
-CornerOptions corner_options(const OrbOptions& options) {
-  return {options.fast_threshold, options.min_fast_threshold, options.cell_px, kOrbBorder};
-}
-
 }  // namespace
 
-struct OrbExtractor::Impl {
-  Impl(int width, int height, const OrbOptions& orb_options)
-      : options(orb_options),
-        pyramid(width, height, orb_options.num_levels, orb_options.scale_factor),
-        share(features_per_level(orb_options.num_features, pyramid.num_levels(), orb_options.scale_factor)),
-        selector(width, height, orb_options.num_features, corner_options(orb_options)),
-        blur(width) {
-    blurred.allocate(width, height);
-    features.keypoints.reserve(static_cast<std::size_t>(orb_options.num_features));
-    features.descriptors.reserve(static_cast<std::size_t>(orb_options.num_features));
-  }
-
-  /// Makes `blurred` the smoothed level.
-  void blur_level(const PaddedImage& level) {
-    blurred.width = level.width;
-    blurred.height = level.height;
-    blur.apply(level, 0, level.height, &blurred);
-  }
-
-  void extract_level(int level, int count) {
-    const PaddedImage& image = pyramid.level(level);
-    const std::span<const Corner> corners = selector.select(image, count);
-    if (corners.empty()) return;
-    blur_level(image);
-    for (const Corner& corner : corners) {
-      Keypoint keypoint{pyramid.column_on_base(level, static_cast<float>(corner.x)),
-                        pyramid.row_on_base(level, static_cast<float>(corner.y)), 0, static_cast<float>(corner.score),
-                        static_cast<std::uint8_t>(level)};
-      features.descriptors.push_back(describe_at(image, corner.x, corner.y, &keypoint));
-      features.keypoints.push_back(keypoint);
-    }
-  }
-
-  /// Descriptor at a pixel of the level whose smoothed image is in `blurred`; sets the keypoint's angle.
-  Descriptor describe_at(const PaddedImage& image, int x, int y, Keypoint* keypoint) const {
-    const float angle_deg = orb_orientation_deg(image.row(y) + x, image.stride);
-    keypoint->angle_rad = radians_from_degrees(angle_deg);
-    return orb_descriptor(blurred.row(y) + x, blurred.stride, angle_deg);
-  }
-
-  [[nodiscard]] bool has_size_of(ImageView<std::uint8_t> image) const {
-    return pyramid.num_levels() > 0 && !image.empty() && image.width == pyramid.level(0).width && image.height == pyramid.level(0).height &&
-           image.stride >= image.width;
-  }
-
-  /// The pixel of its level that a keypoint is on.
-  [[nodiscard]] int column_of(const Keypoint& k) const { return static_cast<int>(std::lrint(pyramid.column_on_level(k.level, k.u))); }
-  [[nodiscard]] int row_of(const Keypoint& k) const { return static_cast<int>(std::lrint(pyramid.row_on_level(k.level, k.v))); }
-
-  void clear() {
-    features.keypoints.clear();
-    features.descriptors.clear();
-  }
-
-  OrbOptions options;
-  ImagePyramid pyramid;
-  std::vector<int> share;  ///< features of each level
-  CornerSelector selector;
-  GaussianBlur blur;
-  PaddedImage blurred;
-  Features features;
-};
-
-OrbExtractor::OrbExtractor(int width, int height, const OrbOptions& options) : impl_(std::make_unique<Impl>(width, height, options)) {}
-OrbExtractor::~OrbExtractor() = default;
-OrbExtractor::OrbExtractor(OrbExtractor&&) noexcept = default;
-OrbExtractor& OrbExtractor::operator=(OrbExtractor&&) noexcept = default;
+OrbExtractor::OrbExtractor(int width, int height, const OrbOptions& options)
+    : pyramid_(width, height, options.num_levels, options.scale_factor),
+      share_(features_per_level(options.num_features, pyramid_.num_levels(), options.scale_factor)),
+      selector_(width, height, options.num_features),
+      blur_(width) {
+  blurred_.allocate(width, height);
+  features_.keypoints.reserve(static_cast<std::size_t>(options.num_features));
+  features_.descriptors.reserve(static_cast<std::size_t>(options.num_features));
+}
 
 const Features& OrbExtractor::extract(ImageView<std::uint8_t> image) {
-  impl_->clear();
-  if (!impl_->has_size_of(image)) return impl_->features;
-  impl_->pyramid.build(image);
+  features_.keypoints.clear();
+  features_.descriptors.clear();
+  const bool has_right_size = pyramid_.num_levels() > 0 && !image.empty() && image.width == pyramid_.level(0).width &&
+                              image.height == pyramid_.level(0).height && image.stride >= image.width;
+  if (!has_right_size) return features_;
+  pyramid_.build(image);
   int allowed = 0;
-  for (int level = 0; level < impl_->pyramid.num_levels(); ++level) {
+  for (int level = 0; level < pyramid_.num_levels(); ++level) {
     // What a level does not use is left to the coarser ones: a blurred image has its corners there.
-    allowed += impl_->share[static_cast<std::size_t>(level)];
-    impl_->extract_level(level, allowed - static_cast<int>(impl_->features.size()));
+    allowed += share_[static_cast<std::size_t>(level)];
+    extract_level(level, allowed - static_cast<int>(features_.size()));
   }
-  return impl_->features;
+  return features_;
+}
+
+void OrbExtractor::extract_level(int level, int count) {
+  const PaddedImage& image = pyramid_.level(level);
+  const std::span<const Corner> corners = selector_.select(image, count);
+  if (corners.empty()) return;
+  blurred_.width = image.width;
+  blurred_.height = image.height;
+  blur_.apply(image, &blurred_);
+  for (const Corner& corner : corners) {
+    const float angle_deg = orb_orientation_deg(image.row(corner.y) + corner.x, image.stride);
+    features_.descriptors.push_back(orb_descriptor(blurred_.row(corner.y) + corner.x, blurred_.stride, angle_deg));
+    features_.keypoints.push_back({pyramid_.column_on_base(level, static_cast<float>(corner.x)),
+                                   pyramid_.row_on_base(level, static_cast<float>(corner.y)), orb_angle_rad(angle_deg),
+                                   static_cast<float>(corner.score), static_cast<std::uint8_t>(level)});
+  }
 }
 
 void OrbExtractor::copy_patches(std::vector<FeaturePatch>* patches) const {
   static_assert(FeaturePatch::kHalf <= kOrbBorder);
-  patches->resize(impl_->features.size());
+  patches->resize(features_.size());
   for (std::size_t i = 0; i < patches->size(); ++i) {
-    const Keypoint& keypoint = impl_->features.keypoints[i];
-    const PaddedImage& level = impl_->pyramid.level(keypoint.level);
-    const int x = impl_->column_of(keypoint), y = impl_->row_of(keypoint);
+    const Keypoint& keypoint = features_.keypoints[i];
+    const PaddedImage& level = pyramid_.level(keypoint.level);
+    const auto x = static_cast<int>(std::lrint(pyramid_.column_on_level(keypoint.level, keypoint.u)));
+    const auto y = static_cast<int>(std::lrint(pyramid_.row_on_level(keypoint.level, keypoint.v)));
     std::uint8_t* out = (*patches)[i].pixels.data();
     for (int dy = -FeaturePatch::kHalf; dy <= FeaturePatch::kHalf; ++dy, out += FeaturePatch::kSide)
       std::copy_n(level.row(y + dy) + x - FeaturePatch::kHalf, FeaturePatch::kSide, out);
   }
 }
-
-const Features& OrbExtractor::describe(ImageView<std::uint8_t> image, const std::vector<Keypoint>& keypoints) {
-  Impl& impl = *impl_;
-  impl.clear();
-  if (!impl.has_size_of(image)) return impl.features;
-  impl.pyramid.build(image);
-  for (const Keypoint& keypoint : keypoints) {
-    if (keypoint.level >= impl.pyramid.num_levels()) continue;
-    const PaddedImage& level = impl.pyramid.level(keypoint.level);
-    const int x = impl.column_of(keypoint), y = impl.row_of(keypoint);
-    const bool is_inside = x >= kOrbBorder && y >= kOrbBorder && x < level.width - kOrbBorder && y < level.height - kOrbBorder;
-    if (is_inside) impl.features.keypoints.push_back(keypoint);
-  }
-  impl.features.descriptors.resize(impl.features.keypoints.size());
-  for (int level = 0; level < impl.pyramid.num_levels(); ++level) {
-    const PaddedImage& level_image = impl.pyramid.level(level);
-    impl.blur_level(level_image);
-    for (std::size_t i = 0; i < impl.features.size(); ++i) {
-      Keypoint& keypoint = impl.features.keypoints[i];
-      if (keypoint.level != level) continue;
-      impl.features.descriptors[i] = impl.describe_at(level_image, impl.column_of(keypoint), impl.row_of(keypoint), &keypoint);
-    }
-  }
-  return impl.features;
-}
-
-const OrbOptions& OrbExtractor::options() const { return impl_->options; }
-float OrbExtractor::scale_of_level(int level) const {
-  return static_cast<float>(std::pow(static_cast<double>(impl_->options.scale_factor), level));
-}
-std::uint64_t OrbExtractor::num_clipped() const { return impl_->selector.num_clipped(); }
 
 }  // namespace camloc

@@ -12,7 +12,6 @@
 #include "core/base/frame.h"
 #include "core/base/result.h"
 #include "core/features/descriptor.h"
-#include "core/features/feature_patch.h"
 #include "core/features/orb_extractor.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/depth_registration.h"

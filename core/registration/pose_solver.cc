@@ -43,7 +43,7 @@ PoseSolver::PoseSolver(const RgbdCamera& camera, const PyramidLevels& levels, co
       focal_px_(camera.color.mean_focal_px()),
       options_(options),
       grid_(camera.color.width, camera.color.height, options.max_features),
-      guided_({.max_distance = kMaxDistance, .max_ratio = kGuidedRatio, .max_matches = options.max_features}, options.max_features),
+      guided_({.max_distance = kMaxDistance, .max_ratio = kGuidedRatio}, options.max_features),
       candidate_matcher_({.max_distance = kMaxDistance, .max_ratio = options.candidate_ratio}, options.max_features,
                          static_cast<std::size_t>(options.max_candidates)),
       candidates_(static_cast<std::size_t>(options.max_candidates)),

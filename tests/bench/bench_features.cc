@@ -13,7 +13,7 @@
 
 #include "core/features/corner_selection.h"
 #include "core/features/gaussian_blur.h"
-#include "core/features/hamming.h"
+#include "core/features/hamming_kernels.h"
 #include "core/features/image_pyramid.h"
 #include "core/features/matcher.h"
 #include "core/features/orb_descriptor.h"
@@ -81,7 +81,7 @@ BENCHMARK(BM_StagePyramid)->Unit(benchmark::kMicrosecond);
 void BM_StageCorners(benchmark::State& state) {
   ImagePyramid pyramid(bench_image().cols, bench_image().rows, 8, 1.2F);
   pyramid.build(view_of(bench_image()));
-  CornerSelector selector(bench_image().cols, bench_image().rows, 1000, CornerOptions{});
+  CornerSelector selector(bench_image().cols, bench_image().rows, 1000);
   for (auto _ : state)
     for (int level = 0; level < pyramid.num_levels(); ++level)
       benchmark::DoNotOptimize(selector.select(pyramid.level(level), 217 * 10 / (10 + 2 * level)));
@@ -96,8 +96,7 @@ void BM_StageBlur(benchmark::State& state) {
   for (int i = 0; i < pyramid.num_levels(); ++i)
     blurred[static_cast<std::size_t>(i)].allocate(pyramid.level(i).width, pyramid.level(i).height);
   for (auto _ : state)
-    for (int i = 0; i < pyramid.num_levels(); ++i)
-      blur.apply(pyramid.level(i), 0, pyramid.level(i).height, &blurred[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < pyramid.num_levels(); ++i) blur.apply(pyramid.level(i), &blurred[static_cast<std::size_t>(i)]);
 }
 BENCHMARK(BM_StageBlur)->Unit(benchmark::kMicrosecond);
 
@@ -118,20 +117,20 @@ void BM_StageDescriptor1000(benchmark::State& state) {
 BENCHMARK(BM_StageDescriptor1000)->Unit(benchmark::kMicrosecond);
 
 void BM_NearestDescriptors(benchmark::State& state) {
-  const auto kernel = static_cast<HammingKernel>(state.range(0));
-  const auto kernels = available_hamming_kernels();
-  if (std::find(kernels.begin(), kernels.end(), kernel) == kernels.end()) {
+  const auto kernels = hamming::available_kernels();
+  const auto number = static_cast<std::size_t>(state.range(0));
+  if (number >= kernels.size()) {
     state.SkipWithError("not available");
     return;
   }
   const auto queries = random_descriptors(1000, 1), train = random_descriptors(static_cast<std::size_t>(state.range(1)), 2);
   std::vector<NearestDescriptor> nearest(queries.size());
-  for (auto _ : state) nearest_descriptors(queries, train, nearest.data(), kernel);
-  state.SetLabel(to_string(kernel));
+  for (auto _ : state) hamming::nearest_descriptors(*kernels[number], queries, train, nearest.data());
+  state.SetLabel(kernels[number]->name);
   state.counters["per_comparison"] = benchmark::Counter(1e3 * static_cast<double>(state.range(1)),
                                                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
-BENCHMARK(BM_NearestDescriptors)->ArgsProduct({{0, 1, 2, 3, 4}, {1000, 16000}})->Unit(benchmark::kMicrosecond);
+BENCHMARK(BM_NearestDescriptors)->ArgsProduct({{0, 1, 2, 3}, {1000, 16000}})->Unit(benchmark::kMicrosecond);
 
 void BM_OpenCvBruteForce(benchmark::State& state) {
   auto queries = random_descriptors(1000, 1), train = random_descriptors(static_cast<std::size_t>(state.range(0)), 2);

@@ -8,6 +8,8 @@
 #include <opencv2/core.hpp>
 #include <random>
 
+#include "core/features/hamming_kernels.h"
+
 namespace camloc {
 namespace {
 
@@ -61,14 +63,13 @@ TEST(Hamming, DistancesFillsWhatItPromisesAndNoMore) {
   }
 }
 
-TEST(Hamming, AvailableKernelsStartWithScalarAndEndWithTheBest) {
-  const auto kernels = available_hamming_kernels();
-  ASSERT_FALSE(kernels.empty());
-  EXPECT_EQ(kernels.front(), HammingKernel::kScalar);
-  EXPECT_EQ(kernels.back(), best_hamming_kernel());
+TEST(Hamming, UsesTheBestOfTheAvailableKernels) {
+  const auto kernels = hamming::available_kernels();
+  EXPECT_STREQ(kernels.front()->name, "scalar");
+  EXPECT_STREQ(kernels.back()->name, hamming_kernel_name());
 }
 
-class HammingKernelTest : public ::testing::TestWithParam<HammingKernel> {};
+class HammingKernelTest : public ::testing::TestWithParam<const hamming::Kernels*> {};
 
 TEST_P(HammingKernelTest, FindsNearestAndSecondAtAllSizes) {
   for (const std::size_t num_train : {0, 1, 2, 7, 15, 16, 17, 31, 32, 100, 511, 512, 513, 1040})
@@ -76,7 +77,7 @@ TEST_P(HammingKernelTest, FindsNearestAndSecondAtAllSizes) {
       const auto train = random_descriptors(num_train, 256, num_train + 1);
       const auto queries = random_descriptors(num_queries, 256, num_queries + 1000);
       std::vector<NearestDescriptor> nearest(num_queries + 1, {7, 7, 7});
-      nearest_descriptors(queries, train, nearest.data(), GetParam());
+      hamming::nearest_descriptors(*GetParam(), queries, train, nearest.data());
       for (std::size_t q = 0; q < num_queries; q += 1 + num_queries / 20) {
         const NearestDescriptor expected = nearest_by_definition(queries[q], train);
         ASSERT_EQ(nearest[q].index, expected.index) << num_train << " train, query " << q << " of " << num_queries;
@@ -92,7 +93,7 @@ TEST_P(HammingKernelTest, TakesTheFirstOfEqualDistances) {
   const auto train = random_descriptors(2000, 5, 4);
   const auto queries = random_descriptors(70, 5, 5);
   std::vector<NearestDescriptor> nearest(queries.size());
-  nearest_descriptors(queries, train, nearest.data(), GetParam());
+  hamming::nearest_descriptors(*GetParam(), queries, train, nearest.data());
   for (std::size_t q = 0; q < queries.size(); ++q) {
     const NearestDescriptor expected = nearest_by_definition(queries[q], train);
     ASSERT_EQ(nearest[q].index, expected.index);
@@ -105,7 +106,7 @@ TEST_P(HammingKernelTest, HoldsTheLargestDistance) {
   std::vector<Descriptor> train(40), queries(5);
   for (Descriptor& descriptor : train) descriptor.bits = {~0ULL, ~0ULL, ~0ULL, ~0ULL};
   std::vector<NearestDescriptor> nearest(queries.size());
-  nearest_descriptors(queries, train, nearest.data(), GetParam());
+  hamming::nearest_descriptors(*GetParam(), queries, train, nearest.data());
   for (const NearestDescriptor& result : nearest) {
     EXPECT_EQ(result.index, 0U);
     EXPECT_EQ(result.distance, 256);
@@ -117,7 +118,7 @@ TEST_P(HammingKernelTest, WorksBeyondSixteenBitPositions) {
   const auto train = random_descriptors(150001, 256, 6);
   const std::vector<Descriptor> queries{train[3], train[65535], train[65536], train[149999], train[150000]};
   std::vector<NearestDescriptor> nearest(queries.size());
-  nearest_descriptors(queries, train, nearest.data(), GetParam());
+  hamming::nearest_descriptors(*GetParam(), queries, train, nearest.data());
   for (std::size_t q = 0; q < queries.size(); ++q) {
     const NearestDescriptor expected = nearest_by_definition(queries[q], train);
     EXPECT_EQ(nearest[q].index, expected.index);
@@ -126,8 +127,8 @@ TEST_P(HammingKernelTest, WorksBeyondSixteenBitPositions) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kernels, HammingKernelTest, ::testing::ValuesIn(available_hamming_kernels()),
-                         [](const auto& kernel) { return std::string(to_string(kernel.param)); });
+INSTANTIATE_TEST_SUITE_P(Kernels, HammingKernelTest, ::testing::ValuesIn(hamming::available_kernels()),
+                         [](const auto& kernel) { return std::string(kernel.param->name); });
 
 }  // namespace
 }  // namespace camloc

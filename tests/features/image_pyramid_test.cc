@@ -59,7 +59,7 @@ TEST(ImagePyramid, LevelsEqualRepeatedOpenCvResize) {
   ASSERT_EQ(pyramid.num_levels(), 8);
   cv::Mat expected = image;
   for (int level = 0; level < 8; ++level) {
-    const float scale = pyramid.scale(level);
+    const float scale = static_cast<float>(std::pow(static_cast<double>(1.2F), level));
     const cv::Size size(cvRound(640 / scale), cvRound(480 / scale));
     if (level > 0) cv::resize(expected.clone(), expected, size, 0, 0, cv::INTER_LINEAR_EXACT);
     ASSERT_EQ(pyramid.level(level).width, size.width);

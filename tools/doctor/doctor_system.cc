@@ -105,9 +105,8 @@ Check check_clock(const ClockState& clock) {
 }
 
 Check check_cpu() {
-  const HammingKernel kernel = best_hamming_kernel();
-  const std::string detail = std::string("descriptor matching with ") + camloc::to_string(kernel);
-  if (kernel == HammingKernel::kScalar)
+  const std::string kernel = hamming_kernel_name(), detail = "descriptor matching with " + kernel;
+  if (kernel == "scalar")
     return {"cpu", Level::kWarning, detail, "expect a lower frame rate; in a virtual machine pass the host's CPU through"};
   return {"cpu", Level::kOk, detail, ""};
 }
