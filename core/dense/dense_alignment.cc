@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Gauss-Newton on the pose of b in a, with the prediction as a prior. Each cell of b with depth is projected into a, where grey level
+// and inverse depth are interpolated and their slopes give the derivatives; both residuals are weighted by Huber's kernel.
 #include "core/dense/dense_alignment.h"
 
 #include <Eigen/Cholesky>
@@ -37,24 +40,16 @@ struct Surroundings {
 
 // What varies slowly over an image is the lens's vignetting and the exposure, which go with the camera, more often than the wall.
 void remove_slow_changes(const Thumbnail& view, std::vector<float>* grey) {
-  const auto at = [](const std::vector<double>& sums, std::size_t stride, int x, int y) {
-    return sums[static_cast<std::size_t>(y) * stride + static_cast<std::size_t>(x)];
-  };
-  const std::size_t stride = static_cast<std::size_t>(view.width) + 1;
-  std::vector<double> sums(stride * (static_cast<std::size_t>(view.height) + 1), 0.0);  // of all cells above and to the left
+  Eigen::ArrayXXd sums = Eigen::ArrayXXd::Zero(view.width + 1, view.height + 1);  // of all cells above and to the left
   for (int y = 0; y < view.height; ++y) {
-    for (int x = 0; x < view.width; ++x) {
-      sums[static_cast<std::size_t>(y + 1) * stride + static_cast<std::size_t>(x + 1)] =
-          view.grey[view.index(x, y)] + at(sums, stride, x, y + 1) + at(sums, stride, x + 1, y) - at(sums, stride, x, y);
-    }
+    for (int x = 0; x < view.width; ++x) sums(x + 1, y + 1) = view.grey[view.index(x, y)] + sums(x, y + 1) + sums(x + 1, y) - sums(x, y);
   }
   grey->resize(view.grey.size());
   for (int y = 0; y < view.height; ++y) {
     for (int x = 0; x < view.width; ++x) {
       const int radius = std::min({kSlowRadius, x, y, view.width - 1 - x, view.height - 1 - y});
       const int left = x - radius, right = x + radius + 1, top = y - radius, bottom = y + radius + 1;
-      const double sum =
-          at(sums, stride, right, bottom) - at(sums, stride, left, bottom) - at(sums, stride, right, top) + at(sums, stride, left, top);
+      const double sum = sums(right, bottom) - sums(left, bottom) - sums(right, top) + sums(left, top);
       const double mean = sum / ((2 * radius + 1) * (2 * radius + 1));
       (*grey)[view.index(x, y)] = Thumbnail::kGreyUnit * static_cast<float>(view.grey[view.index(x, y)] - mean);
     }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The motion between two views from all their pixels at once: grey levels and depth of one are compared with those of the other
+// The motion between two frames from all their pixels at once: grey levels and depth of one are compared with those of the other
 // where a motion would put them (Kerl, Sturm, Cremers, "Dense visual SLAM for RGB-D cameras", 2013). On thumbnails this takes a few
 // milliseconds; it needs a good guess, and serves where there is no feature to hold on to.
 #pragma once
@@ -27,7 +27,7 @@ class DenseAligner {
  public:
   explicit DenseAligner(const RgbdCamera& camera) : camera_(camera) {}
 
-  /// Starts at the prediction, which is a measurement like any other: directions that the views say nothing about, as along a
+  /// Starts at the prediction, which is a measurement like any other: directions that the frames say nothing about, as along a
   /// bare wall, stay as predicted, with the covariance of the prediction (that of pose_error(), axes of a).
   [[nodiscard]] DenseAlignment align(const Thumbnail& a, const Thumbnail& b, const Rigid3& T_a_b_predicted, const Matrix6d& covariance);
 

@@ -31,9 +31,6 @@ struct Window {
   std::array<Pixel, kSide * kSide> pixels{};
   std::size_t size = 0;
   double sum = 0;
-
-  constexpr const Pixel* begin() const { return pixels.data(); }
-  constexpr const Pixel* end() const { return pixels.data() + size; }
 };
 
 Window make_window() {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A view at a glance: grey levels and depth of an RGB-D frame averaged over cells of some pixels. Too coarse for a feature, but a
+// A frame at a glance: grey levels and depth of an RGB-D frame averaged over cells of some pixels. Too coarse for a feature, but a
 // bare wall has no other: averages of many pixels show its faint texture and its slope better than any single one.
 #pragma once
 

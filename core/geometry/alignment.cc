@@ -18,12 +18,6 @@ namespace {
 constexpr double kMinRelativeSpread = 1e-6;
 constexpr double kUnknownPositionM = 1e6;
 
-Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
 /// Weighted moments of the pairs about their centroids.
 struct Moments {
   double weight = 0;
@@ -94,7 +88,7 @@ void solve_covariance(const Moments& m, Alignment* alignment) {
     turn = (Eigen::Matrix3d::Identity() - along) / scatter.trace() + kFreeVariance * along;
   }
   // t = centroid_a - scale R centroid_b: a turn r moves it by -r x lever.
-  const Eigen::Matrix3d lever = skew(alignment->scale * (R_a_b * m.centroid_b));
+  const Eigen::Matrix3d lever = cross_matrix(alignment->scale * (R_a_b * m.centroid_b));
   alignment->covariance.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() / m.weight + lever * turn * lever.transpose();
   alignment->covariance.topRightCorner<3, 3>() = lever * turn;
   alignment->covariance.bottomLeftCorner<3, 3>() = (lever * turn).transpose();
@@ -150,7 +144,7 @@ LeaveOneOutResidual predicted_residual(const Alignment& alignment, const PointPa
   LeaveOneOutResidual residual;
   residual.error_m = pair.p_a - alignment.map(pair.p_b);
   Eigen::Matrix<double, 3, 6> jacobian;
-  jacobian << Eigen::Matrix3d::Identity(), -skew(alignment.T_a_b.rotation * pair.p_b);
+  jacobian << Eigen::Matrix3d::Identity(), -cross_matrix(alignment.T_a_b.rotation * pair.p_b);
   residual.covariance = jacobian * alignment.covariance * jacobian.transpose() + pair.sigma_m * pair.sigma_m * Eigen::Matrix3d::Identity();
   residual.is_determined = alignment.rank == AlignmentRank::kFull;
   return residual;

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// Projection, distortion and its inverse.
 #include "core/geometry/camera.h"
 
 #include <Eigen/LU>

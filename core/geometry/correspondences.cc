@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// Storage and ordering of 2D-3D pairs.
 #include "core/geometry/correspondences.h"
 
 #include <algorithm>
@@ -12,19 +10,11 @@
 
 namespace camloc {
 
-Correspondences::Correspondences(std::size_t capacity)
-    : x(capacity),
-      y(capacity),
-      X(capacity),
-      Y(capacity),
-      Z(capacity),
-      depth_m(capacity),
-      sigma_px(capacity),
-      rank(capacity),
-      feature(capacity),
-      landmark(capacity),
-      order_(capacity),
-      scratch_(capacity) {}
+Correspondences::Correspondences(std::size_t capacity) : feature(capacity), landmark(capacity), order_(capacity), scratch_(capacity) {
+  for (std::vector<float>* values : floats()) values->resize(capacity);
+}
+
+std::array<std::vector<float>*, 8> Correspondences::floats() { return {&x, &y, &X, &Y, &Z, &depth_m, &sigma_px, &rank}; }
 
 bool Correspondences::add(float x_normalized, float y_normalized, float x_map, float y_map, float z_map, float depth, float sigma,
                           float match_rank, std::int32_t feature_index, std::int32_t landmark_index) {
@@ -57,7 +47,7 @@ void Correspondences::sort_by_rank() {
     for (std::size_t i = 0; i < size_; ++i) scratch_[i] = std::bit_cast<float>(values[static_cast<std::size_t>(order_[i])]);
     for (std::size_t i = 0; i < size_; ++i) values[i] = std::bit_cast<T>(scratch_[i]);
   };
-  for (std::vector<float>* values : {&x, &y, &X, &Y, &Z, &depth_m, &sigma_px, &rank}) reorder(*values);
+  for (std::vector<float>* values : floats()) reorder(*values);
   for (std::vector<std::int32_t>* values : {&feature, &landmark}) reorder(*values);
 }
 

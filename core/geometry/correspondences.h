@@ -5,6 +5,7 @@
 // fixed at construction; adding beyond it is refused.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -32,6 +33,8 @@ struct Correspondences {
   std::vector<std::int32_t> feature, landmark;  ///< indices of the caller
 
  private:
+  [[nodiscard]] std::array<std::vector<float>*, 8> floats();
+
   std::size_t size_ = 0;
   std::vector<std::int32_t> order_;
   std::vector<float> scratch_;

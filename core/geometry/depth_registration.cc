@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// Depth look-up per colour pixel.
 #include "core/geometry/depth_registration.h"
 
 #include <algorithm>

@@ -23,6 +23,15 @@ constexpr std::uint32_t kMinCellPoints = 5;
 constexpr double kMinSigmaRad = 0.003;  ///< floors are level to this
 constexpr double kBelowM = 0.10;        ///< clearly below a plane
 constexpr int kMaxLowerPlanes = 4;
+constexpr double kMaxTiltRad = 0.61;  ///< 35 degrees between the floor's normal and the rough up
+constexpr double kInlierDistanceM = 0.03;
+constexpr double kMinHeightM = 0.25;          ///< of the cameras above the floor
+constexpr double kMinInlierShare = 0.10;      ///< of the points that are below the cameras
+constexpr double kMinSpreadM = 0.30;          ///< standard deviation of the floor in each direction
+constexpr double kMinAreaM2 = 2;              ///< in cells that hold floor points and little just above or below
+constexpr double kMinRelativeSupport = 0.25;  ///< a lower plane is the floor when it has this share of the points of a higher one
+constexpr int kNumSamples = 3000;
+constexpr std::size_t kMaxPoints = 60'000;  ///< taken evenly from all
 
 using Points = std::vector<Eigen::Vector3d>;
 
@@ -41,36 +50,38 @@ double median_height(std::span<const Eigen::Vector3d> points, const Eigen::Vecto
   return upper_median(std::move(heights));
 }
 
-/// Finite points below the cameras, at most `max_points` of them.
-Points points_below(std::span<const Eigen::Vector3d> points, double camera_height, const Eigen::Vector3d& up, const FloorOptions& options) {
-  Points below;
-  for (const Eigen::Vector3d& p : points) {
-    if (p.allFinite() && up.dot(p) < camera_height - options.min_height_m) below.push_back(p);
-  }
-  if (below.size() <= options.max_points) return below;
+/// All of them, or `most` taken evenly.
+Points evenly(const Points& points, std::size_t most) {
   Points some;
-  some.reserve(options.max_points);
-  for (std::size_t i = 0; i < options.max_points; ++i) some.push_back(below[i * below.size() / options.max_points]);
+  const std::size_t count = std::min(points.size(), most);
+  for (std::size_t i = 0; i < count; ++i) some.push_back(points[i * points.size() / count]);
   return some;
 }
 
-std::size_t count_inliers(const Plane& plane, const Points& points, double distance_m) {
+/// Finite points below the cameras, at most kMaxPoints of them.
+Points points_below(std::span<const Eigen::Vector3d> points, double camera_height, const Eigen::Vector3d& up) {
+  Points below;
+  for (const Eigen::Vector3d& p : points) {
+    if (p.allFinite() && up.dot(p) < camera_height - kMinHeightM) below.push_back(p);
+  }
+  return evenly(below, kMaxPoints);
+}
+
+std::size_t count_inliers(const Plane& plane, const Points& points) {
   return static_cast<std::size_t>(
-      std::count_if(points.begin(), points.end(), [&](const Eigen::Vector3d& p) { return std::abs(plane.height(p)) <= distance_m; }));
+      std::count_if(points.begin(), points.end(), [&](const Eigen::Vector3d& p) { return std::abs(plane.height(p)) <= kInlierDistanceM; }));
 }
 
 /// The plane through three random points with most points on it; no inliers where none is level enough.
-Plane sample_planes(const Points& points, const Eigen::Vector3d& up, const FloorOptions& options) {
+Plane sample_planes(const Points& points, const Eigen::Vector3d& up) {
   Plane best;
   if (points.size() < 3) return best;
   // Hypotheses are scored on some of the points, the best one on all.
   constexpr std::size_t kScoringPoints = 2000;
-  Points scoring;
-  const std::size_t num_scoring = std::min(points.size(), kScoringPoints);
-  for (std::size_t i = 0; i < num_scoring; ++i) scoring.push_back(points[i * points.size() / num_scoring]);
-  const double min_cosine = std::cos(options.max_tilt_rad);
+  const Points scoring = evenly(points, kScoringPoints);
+  const double min_cosine = std::cos(kMaxTiltRad);
   std::mt19937 random(1);
-  for (int i = 0; i < options.num_samples; ++i) {
+  for (int i = 0; i < kNumSamples; ++i) {
     const Eigen::Vector3d &a = points[random() % points.size()], &b = points[random() % points.size()],
                           &c = points[random() % points.size()];
     Plane plane;
@@ -80,10 +91,10 @@ Plane sample_planes(const Points& points, const Eigen::Vector3d& up, const Floor
     plane.normal *= (plane.normal.dot(up) < 0 ? -1 : 1) / length;
     if (plane.normal.dot(up) < min_cosine) continue;
     plane.offset = plane.normal.dot(a);
-    plane.num_inliers = count_inliers(plane, scoring, options.inlier_distance_m);
+    plane.num_inliers = count_inliers(plane, scoring);
     if (plane.num_inliers > best.num_inliers) best = plane;
   }
-  if (best.num_inliers > 0) best.num_inliers = count_inliers(best, points, options.inlier_distance_m);
+  if (best.num_inliers > 0) best.num_inliers = count_inliers(best, points);
   return best;
 }
 
@@ -105,7 +116,7 @@ struct Cell {
 /// A plane through clutter has points on it, too, but as many above and below. Looked up, never iterated.
 class FloorGrid {
  public:
-  FloorGrid(const Plane& plane, const Points& points, double distance_m) {
+  FloorGrid(const Plane& plane, const Points& points) {
     const Eigen::Vector3d x = plane.normal.unitOrthogonal();
     axes_ << x.transpose(), plane.normal.cross(x).transpose();
     for (const Eigen::Vector3d& p : points) {
@@ -113,7 +124,7 @@ class FloorGrid {
       if (height > kNearM) continue;
       Cell& cell = cells_[key(p)];
       ++cell.num_near;
-      if (height <= distance_m) ++cell.num_on;
+      if (height <= kInlierDistanceM) ++cell.num_on;
     }
   }
   [[nodiscard]] bool is_floor_at(const Eigen::Vector3d& p) const {
@@ -132,10 +143,10 @@ class FloorGrid {
 };
 
 /// Points on the plane where the plane is a floor.
-Points floor_points(const Plane& plane, const Points& points, const FloorGrid& grid, double distance_m) {
+Points floor_points(const Plane& plane, const Points& points, const FloorGrid& grid) {
   Points chosen;
   for (const Eigen::Vector3d& p : points) {
-    if (std::abs(plane.height(p)) <= distance_m && grid.is_floor_at(p)) chosen.push_back(p);
+    if (std::abs(plane.height(p)) <= kInlierDistanceM && grid.is_floor_at(p)) chosen.push_back(p);
   }
   return chosen;
 }
@@ -163,11 +174,11 @@ Eigen::Vector3d mean_of(const Points& points) {
 }
 
 /// Least squares over the points of the floor, again with those near the new plane.
-Fit refine(Plane plane, const Points& points, const FloorOptions& options) {
+Fit refine(Plane plane, const Points& points) {
   Fit fit;
   for (int round = 0; round < 3; ++round) {
-    const FloorGrid grid(plane, points, options.inlier_distance_m);
-    const Points inliers = floor_points(plane, points, grid, options.inlier_distance_m);
+    const FloorGrid grid(plane, points);
+    const Points inliers = floor_points(plane, points, grid);
     plane.num_inliers = inliers.size();
     if (inliers.size() < 3) break;
     const Eigen::Vector3d mean = mean_of(inliers);
@@ -188,13 +199,13 @@ Fit refine(Plane plane, const Points& points, const FloorOptions& options) {
 }
 
 /// A table is a plane, too, but there is one with much support below it.
-Plane lowest_plane(const Points& points, const Eigen::Vector3d& up, const FloorOptions& options) {
-  Plane plane = sample_planes(points, up, options);
+Plane lowest_plane(const Points& points, const Eigen::Vector3d& up) {
+  Plane plane = sample_planes(points, up);
   Points lower = points;
   for (int i = 0; i < kMaxLowerPlanes && plane.num_inliers > 0; ++i) {
     std::erase_if(lower, [&](const Eigen::Vector3d& p) { return plane.height(p) > -kBelowM; });
-    const Plane candidate = sample_planes(lower, up, options);
-    if (static_cast<double>(candidate.num_inliers) < options.min_relative_support * static_cast<double>(plane.num_inliers)) break;
+    const Plane candidate = sample_planes(lower, up);
+    if (static_cast<double>(candidate.num_inliers) < kMinRelativeSupport * static_cast<double>(plane.num_inliers)) break;
     plane = candidate;
   }
   return plane;
@@ -209,29 +220,25 @@ Status no_floor(const std::string& reason) {
 }  // namespace
 
 Result<GravityEstimate> gravity_from_floor(std::span<const Eigen::Vector3d> points_map, std::span<const Eigen::Vector3d> camera_centers_map,
-                                           const Eigen::Vector3d& rough_up_map, const FloorOptions& options) {
+                                           const Eigen::Vector3d& rough_up_map) {
   if (camera_centers_map.empty()) return {ErrorCode::kInvalid, "no camera to look for a floor below"};
   const Eigen::Vector3d up = rough_up_map.normalized();
-  const Points points = points_below(points_map, median_height(camera_centers_map, up), up, options);
+  const Points points = points_below(points_map, median_height(camera_centers_map, up), up);
   if (points.size() < 3) return no_floor("no points below the cameras");
-  const Fit fit = refine(lowest_plane(points, up, options), points, options);
+  const Fit fit = refine(lowest_plane(points, up), points);
 
   GravityEstimate estimate;
   estimate.source = GravitySource::kFloor;
   estimate.up_map = fit.plane.normal;
   estimate.sigma_rad = fit.sigma_rad;
-  estimate.num_samples = points.size();
   estimate.inlier_share = static_cast<double>(fit.plane.num_inliers) / static_cast<double>(points.size());
-  estimate.scatter = fit.rms_m;
-  estimate.floor_offset_m = fit.plane.offset;
   estimate.camera_height_m = median_height(camera_centers_map, fit.plane.normal) - fit.plane.offset;
-  if (estimate.inlier_share < options.min_inlier_share) {
+  if (estimate.inlier_share < kMinInlierShare) {
     return no_floor("the best level plane holds only " + percent(estimate.inlier_share) + " of the points below the cameras");
   }
-  if (fit.spread_m < options.min_spread_m || fit.area_m2 < options.min_area_m2)
-    return no_floor("the best level plane is only a strip or a small patch");
-  if (fit.plane.normal.dot(up) < std::cos(options.max_tilt_rad)) return no_floor("the best plane is not level");
-  if (estimate.camera_height_m < options.min_height_m) return no_floor("the best level plane is not below the cameras");
+  if (fit.spread_m < kMinSpreadM || fit.area_m2 < kMinAreaM2) return no_floor("the best level plane is only a strip or a small patch");
+  if (fit.plane.normal.dot(up) < std::cos(kMaxTiltRad)) return no_floor("the best plane is not level");
+  if (estimate.camera_height_m < kMinHeightM) return no_floor("the best level plane is not below the cameras");
   const auto num_below = static_cast<double>(
       std::count_if(points.begin(), points.end(), [&](const Eigen::Vector3d& p) { return fit.plane.height(p) < -kBelowM; }));
   if (num_below > 0.5 * static_cast<double>(fit.plane.num_inliers)) return no_floor("many points lie below the best level plane");

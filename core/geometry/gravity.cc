@@ -18,16 +18,21 @@ constexpr int kMaxMedianSteps = 100;
 /// Readings follow each other: this many of them say as much as one that is independent.
 constexpr double kReadingsPerIndependent = 10;
 constexpr double kMinRoughLength = 0.3;
+constexpr double kMaxNormErrorMS2 = 1.5;  // from standard gravity: a reading while the camera is being pushed says nothing
+constexpr double kMaxScatterRad = 0.17;   // 10 degrees; above this the axes, the poses or the clock are wrong
+constexpr double kBiasSigmaRad = 0.0175;  // 1 degree, what the sensor itself is good for
+constexpr std::size_t kMinReadings = 20;
 
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 /// Unit vectors up, one per reading that is no push.
-std::vector<Eigen::Vector3d> directions_up(std::span<const OrientedReading> readings, const AccelerometerOptions& options) {
+std::vector<Eigen::Vector3d> directions_up(std::span<const OrientedReading> readings) {
+  const Eigen::Matrix3d R_camera_accelerometer = kinect_R_camera_accelerometer();
   std::vector<Eigen::Vector3d> directions;
   for (const OrientedReading& reading : readings) {
     const double norm = reading.acceleration.norm();
-    if (!(std::abs(norm - kStandardGravity) <= options.max_norm_error)) continue;
-    directions.push_back(reading.R_map_camera * (options.R_camera_accelerometer * (reading.acceleration / norm)));
+    if (!(std::abs(norm - kStandardGravity) <= kMaxNormErrorMS2)) continue;
+    directions.push_back(reading.R_map_camera * (R_camera_accelerometer * (reading.acceleration / norm)));
   }
   return directions;
 }
@@ -83,13 +88,6 @@ RobustMean robust_mean(const std::vector<Eigen::Vector3d>& directions) {
 
 std::string in_degrees(double angle_rad) { return std::to_string(std::lround(angle_rad * 57.29577951308232)) + " degrees"; }
 
-Status check_count(std::size_t num_used, std::size_t num_readings, const AccelerometerOptions& options) {
-  if (num_used >= options.min_readings) return Status::ok();
-  return {ErrorCode::kInvalid, "only " + std::to_string(num_used) + " of " + std::to_string(num_readings) +
-                                   " accelerometer readings are of a camera with a pose that is not being pushed; " +
-                                   std::to_string(options.min_readings) + " are needed"};
-}
-
 }  // namespace
 
 std::optional<Eigen::Vector3d> rough_up(std::span<const Rigid3> T_map_camera) {
@@ -101,11 +99,15 @@ std::optional<Eigen::Vector3d> rough_up(std::span<const Rigid3> T_map_camera) {
 
 Eigen::Matrix3d kinect_R_camera_accelerometer() { return Eigen::Vector3d(-1, -1, 1).asDiagonal(); }
 
-Result<GravityEstimate> gravity_from_accelerometer(std::span<const OrientedReading> readings, const AccelerometerOptions& options) {
-  const std::vector<Eigen::Vector3d> directions = directions_up(readings, options);
-  if (const Status status = check_count(directions.size(), readings.size(), options); !status) return status;
+Result<GravityEstimate> gravity_from_accelerometer(std::span<const OrientedReading> readings) {
+  const std::vector<Eigen::Vector3d> directions = directions_up(readings);
+  if (directions.size() < kMinReadings) {
+    return {ErrorCode::kInvalid, "only " + std::to_string(directions.size()) + " of " + std::to_string(readings.size()) +
+                                     " accelerometer readings are of a camera with a pose that is not being pushed; " +
+                                     std::to_string(kMinReadings) + " are needed"};
+  }
   const RobustMean mean = robust_mean(directions);
-  if (mean.median_angle_rad > options.max_scatter_rad) {
+  if (mean.median_angle_rad > kMaxScatterRad) {
     return {ErrorCode::kInvalid, "accelerometer readings point up to different sides, " + in_degrees(mean.median_angle_rad) +
                                      " from each other's mean; check the order and signs of its axes, its clock, and that it belongs to "
                                      "these poses"};
@@ -113,11 +115,9 @@ Result<GravityEstimate> gravity_from_accelerometer(std::span<const OrientedReadi
   GravityEstimate estimate;
   estimate.source = GravitySource::kAccelerometer;
   estimate.up_map = mean.direction;
-  estimate.num_samples = directions.size();
   estimate.inlier_share = static_cast<double>(mean.num_inliers) / static_cast<double>(directions.size());
-  estimate.scatter = mean.rms_rad;
   const double num_independent = std::max(1.0, static_cast<double>(mean.num_inliers) / kReadingsPerIndependent);
-  estimate.sigma_rad = std::hypot(mean.rms_rad / std::sqrt(num_independent), options.bias_sigma_rad);
+  estimate.sigma_rad = std::hypot(mean.rms_rad / std::sqrt(num_independent), kBiasSigmaRad);
   return estimate;
 }
 

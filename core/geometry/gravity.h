@@ -24,11 +24,8 @@ struct GravityEstimate {
   Eigen::Vector3d up_map = Eigen::Vector3d::UnitZ();  ///< unit vector, axes of `map`
   double sigma_rad = 0;                               ///< standard deviation of its tilt about each horizontal axis
   GravitySource source = GravitySource::kFloor;
-  std::size_t num_samples = 0;  ///< readings, or points below the cameras
-  double inlier_share = 0;      ///< of them, that agree
-  double scatter = 0;           ///< RMS of those: angle in radians (accelerometer), distance from the plane in metres (floor)
-  double camera_height_m = 0;   ///< kFloor: median height of the cameras above it
-  double floor_offset_m = 0;    ///< kFloor: up_map . p of points on the floor
+  double inlier_share = 0;     ///< of the readings, or of the points below the cameras, that agree
+  double camera_height_m = 0;  ///< kFloor: median height of the cameras above it
 };
 
 /// Mean direction to which the tops of images point (-y of the cameras): good to some 20 degrees where people carry the
@@ -47,38 +44,17 @@ struct OrientedReading {
 /// of it, so that a level Kinect at rest reads (0, +9.8, 0).
 [[nodiscard]] Eigen::Matrix3d kinect_R_camera_accelerometer();
 
-struct AccelerometerOptions {
-  Eigen::Matrix3d R_camera_accelerometer = kinect_R_camera_accelerometer();
-  double max_norm_error = 1.5;     ///< m/s^2 from standard gravity: a reading while the camera is being pushed says nothing
-  double max_scatter_rad = 0.17;   ///< 10 degrees; above this the axes, the poses or the clock are wrong
-  double bias_sigma_rad = 0.0175;  ///< 1 degree, what the sensor itself is good for
-  std::size_t min_readings = 20;
-};
-
 /// Robust mean of R_map_camera R_camera_accelerometer a: half of the readings may be anything.
 /// Errors: kInvalid (too few readings at rest; they disagree) with what to look at.
-[[nodiscard]] Result<GravityEstimate> gravity_from_accelerometer(std::span<const OrientedReading> readings,
-                                                                 const AccelerometerOptions& options = {});
+[[nodiscard]] Result<GravityEstimate> gravity_from_accelerometer(std::span<const OrientedReading> readings);
 
 // ---- floor
-
-struct FloorOptions {
-  double max_tilt_rad = 0.61;  ///< 35 degrees between the floor's normal and the rough up
-  double inlier_distance_m = 0.03;
-  double min_height_m = 0.25;          ///< of the cameras above the floor
-  double min_inlier_share = 0.10;      ///< of the points that are below the cameras
-  double min_spread_m = 0.30;          ///< standard deviation of the floor in each direction
-  double min_area_m2 = 2;              ///< in squares of 0.5 m that hold floor points and little just above or below
-  double min_relative_support = 0.25;  ///< a lower plane is the floor when it has this share of the points of a higher one
-  int num_samples = 3000;
-  std::size_t max_points = 60'000;  ///< taken evenly from all
-};
 
 /// The lowest plane with much support below the cameras, refined by least squares. Seeded: the same points give the same
 /// bits. `points_map` are dense surface points; landmarks do when there are many on the floor.
 /// Errors: kInvalid (no camera, no point below them), kNotFound (no clear floor, and why).
 [[nodiscard]] Result<GravityEstimate> gravity_from_floor(std::span<const Eigen::Vector3d> points_map,
                                                          std::span<const Eigen::Vector3d> camera_centers_map,
-                                                         const Eigen::Vector3d& rough_up_map, const FloorOptions& options = {});
+                                                         const Eigen::Vector3d& rough_up_map);
 
 }  // namespace camloc

@@ -124,29 +124,23 @@ Matrix3d axes_of_triangle(const Vector3d& side_1, const Vector3d& side_2) {
   return axes;
 }
 
-/// Collects poses for depths.
-class PoseBuilder {
- public:
-  PoseBuilder(const std::array<Vector3d, 3>& bearings, const std::array<Vector3d, 3>& points)
-      : bearings_(bearings), origin_(points[0]), axes_map_(axes_of_triangle(points[1] - points[0], points[2] - points[0])) {}
-
-  void add(const Vector3d& depths, P3pSolutions* solutions) const {
-    const Vector3d p0 = depths[0] * bearings_[0];
-    const Matrix3d axes_camera = axes_of_triangle(depths[1] * bearings_[1] - p0, depths[2] * bearings_[2] - p0);
-    const auto k = static_cast<std::size_t>(solutions->count++);
-    solutions->R_camera_map[k].noalias() = axes_camera * axes_map_.transpose();
-    solutions->t_camera_map[k] = p0 - solutions->R_camera_map[k] * origin_;
-  }
-
- private:
-  const std::array<Vector3d, 3>& bearings_;
-  Vector3d origin_;
-  Matrix3d axes_map_;
+/// A triangle of points and the directions in which they are seen.
+struct Triangle {
+  const std::array<Vector3d, 3>& bearings;
+  const std::array<Vector3d, 3>& points;
+  Matrix3d axes_map;
 };
 
+void add_pose(const Triangle& triangle, const Vector3d& depths, P3pSolutions* solutions) {
+  const Vector3d p0 = depths[0] * triangle.bearings[0];
+  const Matrix3d axes_camera = axes_of_triangle(depths[1] * triangle.bearings[1] - p0, depths[2] * triangle.bearings[2] - p0);
+  const auto k = static_cast<std::size_t>(solutions->count++);
+  solutions->R_camera_map[k].noalias() = axes_camera * triangle.axes_map.transpose();
+  solutions->t_camera_map[k] = p0 - solutions->R_camera_map[k] * triangle.points[0];
+}
+
 /// Depths (up to scale) where the line meets the conic, scaled by the sum of the distance equations, polished, added.
-void intersect(const Vector3d& line, const Matrix3d& conic, const Distances& distances, const PoseBuilder& builder,
-               P3pSolutions* solutions) {
+void intersect(const Vector3d& line, const Matrix3d& conic, const Distances& distances, const Triangle& triangle, P3pSolutions* solutions) {
   int k = 0;
   line.cwiseAbs().maxCoeff(&k);
   const int i = (k + 1) % 3, j = (k + 2) % 3;
@@ -170,7 +164,7 @@ void intersect(const Vector3d& line, const Matrix3d& conic, const Distances& dis
     const double scale_squared = distances.squared_sum / relative.sum();
     if (!(scale_squared > 0.0 && scale_squared < 1e30)) continue;
     s *= std::sqrt(scale_squared);
-    if (polish(distances, &s)) builder.add(s, solutions);
+    if (polish(distances, &s)) add_pose(triangle, s, solutions);
   }
 }
 
@@ -208,10 +202,10 @@ P3pSolutions solve_p3p(const std::array<Vector3d, 3>& bearings_camera, const std
 
   Vector3d l, m;
   if (!split_into_lines(degenerate, &l, &m)) return solutions;
-  const PoseBuilder builder(bearings_camera, points_map);
+  const Triangle triangle{bearings_camera, points_map, axes_of_triangle(points_map[1] - points_map[0], points_map[2] - points_map[0])};
   const Matrix3d& other = is_mostly_D ? C : D;
-  intersect(l, other, d, builder, &solutions);
-  intersect(m, other, d, builder, &solutions);
+  intersect(l, other, d, triangle, &solutions);
+  intersect(m, other, d, triangle, &solutions);
   return solutions;
 }
 

@@ -12,7 +12,6 @@
 
 #include "core/geometry/p3p.h"
 #include "core/geometry/pose_jacobian.h"
-#include "core/geometry/reprojection_sums.h"
 
 namespace camloc {
 namespace {
@@ -56,25 +55,12 @@ Sample draw(std::size_t size, Random* random) {
   return sample;
 }
 
-/// n(k) of the header.
-class GrowthSchedule {
- public:
-  GrowthSchedule(std::size_t num_pairs, int iterations)
-      : num_pairs_(num_pairs), iterations_(static_cast<std::uint64_t>(iterations)), size_(std::min<std::size_t>(4, num_pairs)) {}
-
-  std::size_t pool_size(int iteration) {
-    const std::uint64_t target = (static_cast<std::uint64_t>(iteration) + 1) * triples(num_pairs_);
-    while (size_ < num_pairs_ && triples(size_) * iterations_ < target) ++size_;
-    return size_;
-  }
-
- private:
-  static std::uint64_t triples(std::uint64_t n) { return n * (n - 1) * (n - 2) / 6; }
-
-  std::size_t num_pairs_;
-  std::uint64_t iterations_;
-  std::size_t size_;
-};
+/// n(k) of the header, at least `pool`, which is that of a sample before.
+std::size_t grown_pool(std::size_t pool, std::size_t num_pairs, std::uint64_t sample, std::uint64_t num_samples) {
+  const auto triples = [](std::uint64_t n) { return n * (n - 1) * (n - 2) / 6; };
+  while (pool < num_pairs && triples(pool) * num_samples < (sample + 1) * triples(num_pairs)) ++pool;
+  return pool;
+}
 
 Eigen::Vector3d ray(const PoseScorer& pairs, std::size_t i) {
   const Eigen::Vector2d p = pairs.image_point(i);
@@ -92,10 +78,8 @@ bool is_consistent_with_depth(const PoseScorer& pairs, const Sample& sample, flo
 
 ScoredPose scored_pose(const Eigen::Matrix3d& R_camera_map, const Eigen::Vector3d& t_camera_map) {
   ScoredPose pose;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) pose.R[3 * row + column] = static_cast<float>(R_camera_map(row, column));
-    pose.t[row] = static_cast<float>(t_camera_map[row]);
-  }
+  Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(pose.R) = R_camera_map.cast<float>();
+  Eigen::Map<Eigen::Vector3f>(pose.t) = t_camera_map.cast<float>();
   return pose;
 }
 
@@ -178,12 +162,12 @@ PnpRansacResult PnpRansac::estimate(const Correspondences& pairs, double focal_p
   scorer_.set_pairs(pairs, n, focal_px, options_.max_error_px, options_.max_relative_depth_error);
 
   Random random(seed);
-  GrowthSchedule schedule(n, options_.iterations);
+  std::size_t pool_size = 4;
   Best best;
   int num_polished = 0;
   const auto max_relative_depth_error = static_cast<float>(options_.max_relative_depth_error);
   for (int iteration = 0; iteration < options_.iterations; ++iteration) {
-    const std::size_t pool_size = schedule.pool_size(iteration);
+    pool_size = grown_pool(pool_size, n, static_cast<std::uint64_t>(iteration), static_cast<std::uint64_t>(options_.iterations));
     Sample sample = draw(pool_size, &random);
     for (int redraw = 0; redraw < kMaxRedraws; ++redraw) {
       if (is_consistent_with_depth(scorer_, sample, max_relative_depth_error)) break;

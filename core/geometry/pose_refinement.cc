@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// Levenberg-Marquardt over one pose, with depth as an observation of its own.
 #include "core/geometry/pose_refinement.h"
 
 #include <Eigen/Cholesky>
@@ -19,6 +17,7 @@ namespace {
 constexpr double kCauchyReach = 5.0;        // the Cauchy pass sees pairs within this many times max_error_px
 constexpr double kCauchyReachFocal = 20.0;  // a wrong focal length moves the border of the image by tens of pixels
 constexpr double kCauchyDepthReach = 20.0;  // sigmas; beyond, a depth adds a constant
+constexpr double kMaxDepthErrorSigmas = 4;  // a depth residual farther off is left out (its pixel stays)
 constexpr double kMinFocalScale = 0.3, kMaxFocalScale = 3.0;
 constexpr double kSettled = 1e-7;  // share of the cost below which a step ends a pass
 constexpr std::size_t kMinInliers = 4;
@@ -28,70 +27,25 @@ struct State {
   double focal_scale = 1.0;
 };
 
-/// Everything a pair says at one state.
-struct Residual {
-  bool is_in_front = false;
-  bool has_depth = false;
-  double u = 0, v = 0, z = 0;   ///< predicted: normalized coordinates and depth
-  double du_px = 0, dv_px = 0;  ///< predicted minus measured
-  double error_squared_px = 0;
-  double sigma_px = 1;
-  double depth_sigmas = 0;  ///< predicted minus measured, in sigmas
-  double depth_sigma_m = 1;
-};
-
-class Problem {
- public:
-  Problem(const Correspondences& pairs, double focal_px, const PoseRefinementOptions& options)
-      : pairs_(pairs), focal_px_(focal_px), options_(options) {}
-
-  [[nodiscard]] const Correspondences& pairs() const { return pairs_; }
-  [[nodiscard]] const PoseRefinementOptions& options() const { return options_; }
-  [[nodiscard]] double focal_px() const { return focal_px_; }
-
-  [[nodiscard]] Residual residual(std::size_t i, const Eigen::Matrix3d& R_camera_map, const State& state) const {
-    Residual r;
-    const Eigen::Vector3d p_map(pairs_.X[i], pairs_.Y[i], pairs_.Z[i]);
-    const Eigen::Vector3d p = R_camera_map * (p_map - state.T_map_camera.translation);
-    r.is_in_front = p.z() > kMinRefinementDepth_m;
-    if (!r.is_in_front) return r;
-    r.z = p.z();
-    r.u = p.x() / p.z();
-    r.v = p.y() / p.z();
-    r.du_px = focal_px_ * (state.focal_scale * r.u - pairs_.x[i]);
-    r.dv_px = focal_px_ * (state.focal_scale * r.v - pairs_.y[i]);
-    r.error_squared_px = r.du_px * r.du_px + r.dv_px * r.dv_px;
-    r.sigma_px = sigma_px(i);
-    r.has_depth = has_depth(i);
-    if (r.has_depth) {
-      const double measured_m = pairs_.depth_m[i];
-      r.depth_sigma_m = options_.depth_noise.sigma_m(measured_m);
-      r.depth_sigmas = (r.z - measured_m) / r.depth_sigma_m;
-    }
-    return r;
-  }
-
-  [[nodiscard]] bool has_depth(std::size_t i) const { return options_.use_depth && pairs_.depth_m[i] > 0.0F; }
-  [[nodiscard]] double sigma_px(std::size_t i) const { return pairs_.sigma_px[i] > 0.0F ? pairs_.sigma_px[i] : 1.0; }
-
- private:
-  const Correspondences& pairs_;
-  double focal_px_;
-  PoseRefinementOptions options_;
+struct Problem {
+  const Correspondences& pairs;
+  double focal_px;
+  const PoseRefinementOptions& options;
 };
 
 template <int N>
 RefinementModel model_of(const Problem& problem, RobustKernel kernel) {
-  const PoseRefinementOptions& options = problem.options();
-  const double cauchy_reach = N == 7 ? kCauchyReachFocal : kCauchyReach;
   RefinementModel model;
-  model.focal_px = problem.focal_px();
-  model.depth_noise = options.depth_noise;
-  model.use_depth = options.use_depth;
+  model.focal_px = problem.focal_px;
+  model.depth_noise = problem.options.depth_noise;
+  model.use_depth = problem.options.use_depth;
   model.kernel = kernel;
-  model.cauchy_scale = options.cauchy_scale;
-  model.reach_px = kernel == RobustKernel::kCauchy ? cauchy_reach * options.max_error_px : options.max_error_px;
-  model.reach_depth_sigmas = kernel == RobustKernel::kCauchy ? kCauchyDepthReach : options.max_depth_error_sigmas;
+  model.reach_px = problem.options.max_error_px;
+  model.reach_depth_sigmas = kMaxDepthErrorSigmas;
+  if (kernel == RobustKernel::kCauchy) {
+    model.reach_px = (N == 7 ? kCauchyReachFocal : kCauchyReach) * problem.options.max_error_px;
+    model.reach_depth_sigmas = kCauchyDepthReach;
+  }
   return model;
 }
 
@@ -107,10 +61,10 @@ State moved(const State& state, const Eigen::Matrix<double, N, 1>& change) {
 template <int N>
 NormalEquations<N> minimize(const Problem& problem, RobustKernel kernel, State* state) {
   const RefinementModel model = model_of<N>(problem, kernel);
-  const auto evaluate = [&](const State& at) { return normal_equations<N>(problem.pairs(), model, at.T_map_camera, at.focal_scale); };
+  const auto evaluate = [&](const State& at) { return normal_equations<N>(problem.pairs, model, at.T_map_camera, at.focal_scale); };
   NormalEquations<N> here = evaluate(*state);
   double damping = 1e-4;
-  for (int iteration = 0; iteration < problem.options().max_iterations; ++iteration) {
+  for (int iteration = 0; iteration < problem.options.max_iterations; ++iteration) {
     Eigen::Matrix<double, N, N> damped = here.hessian;
     damped.diagonal() *= 1.0 + damping;
     damped.diagonal().array() += 1e-9;
@@ -143,26 +97,32 @@ double collect_statistics(const Problem& problem, const State& state, PoseRefine
   constexpr std::size_t kMaxForMedian = 2048;
   std::array<float, kMaxForMedian> errors;  // every `stride`-th inlier when there are more
   std::size_t num_errors = 0;
-  const std::size_t n = problem.pairs().size();
+  const Correspondences& pairs = problem.pairs;
+  const std::size_t n = pairs.size();
   const std::size_t stride = n / kMaxForMedian + 1;
   const Eigen::Matrix3d R_camera_map = state.T_map_camera.rotation.conjugate().toRotationMatrix();
-  const double max_squared_px = problem.options().max_error_px * problem.options().max_error_px;
-  double sum_px = 0, sum_sigmas = 0, sum_depth_sigmas = 0, sum_relative = 0;
+  const double max_squared_px = problem.options.max_error_px * problem.options.max_error_px;
+  double sum_px = 0, sum_sigmas = 0, sum_squared_depth = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    const Residual r = problem.residual(i, R_camera_map, state);
-    const bool is_inlier = r.is_in_front && r.error_squared_px <= max_squared_px;
+    const Eigen::Vector3d p_map(pairs.X[i], pairs.Y[i], pairs.Z[i]);
+    const Eigen::Vector3d p = R_camera_map * (p_map - state.T_map_camera.translation);
+    const double du_px = problem.focal_px * (state.focal_scale * (p.x() / p.z()) - pairs.x[i]);
+    const double dv_px = problem.focal_px * (state.focal_scale * (p.y() / p.z()) - pairs.y[i]);
+    const double squared_px = du_px * du_px + dv_px * dv_px;
+    const bool is_inlier = p.z() > kMinRefinementDepth_m && squared_px <= max_squared_px;
     if (inlier_mask != nullptr) (*inlier_mask)[i] = is_inlier ? 1 : 0;
     if (!is_inlier) continue;
-    if (static_cast<std::size_t>(result->num_inliers++) % stride == 0) errors[num_errors++] = static_cast<float>(r.error_squared_px);
-    sum_px += r.error_squared_px;
-    sum_sigmas += r.error_squared_px / (r.sigma_px * r.sigma_px);
-    if (problem.pairs().depth_m[i] <= 0.0F) continue;
+    if (static_cast<std::size_t>(result->num_inliers++) % stride == 0) errors[num_errors++] = static_cast<float>(squared_px);
+    const double sigma_px = pairs.sigma_px[i] > 0.0F ? pairs.sigma_px[i] : 1.0;
+    sum_px += squared_px;
+    sum_sigmas += squared_px / (sigma_px * sigma_px);
+    const double measured_m = pairs.depth_m[i];
+    if (measured_m <= 0) continue;
     ++result->num_with_depth;
-    sum_relative += (problem.pairs().depth_m[i] - r.z) / r.z;
-    const double depth_sigmas = (r.z - problem.pairs().depth_m[i]) / problem.options().depth_noise.sigma_m(problem.pairs().depth_m[i]);
-    if (std::abs(depth_sigmas) > problem.options().max_depth_error_sigmas) continue;
+    const double depth_sigmas = (p.z() - measured_m) / problem.options.depth_noise.sigma_m(measured_m);
+    if (std::abs(depth_sigmas) > kMaxDepthErrorSigmas) continue;
     ++result->num_depth_inliers;
-    sum_depth_sigmas += depth_sigmas * depth_sigmas;
+    sum_squared_depth += depth_sigmas * depth_sigmas;
   }
   if (num_errors > 0) {
     float* const middle = errors.data() + num_errors / 2;
@@ -170,9 +130,7 @@ double collect_statistics(const Problem& problem, const State& state, PoseRefine
     result->median_px = std::sqrt(static_cast<double>(*middle));
     result->rms_px = std::sqrt(sum_px / result->num_inliers);
   }
-  if (result->num_with_depth > 0) result->mean_relative_depth_error = sum_relative / result->num_with_depth;
-  if (result->num_depth_inliers > 0) result->rms_depth_sigmas = std::sqrt(sum_depth_sigmas / result->num_depth_inliers);
-  return sum_sigmas + (problem.options().use_depth ? sum_depth_sigmas : 0.0);
+  return sum_sigmas + (problem.options.use_depth ? sum_squared_depth : 0.0);
 }
 
 template <int N>
@@ -186,7 +144,7 @@ PoseRefinementResult refine(const Problem& problem, const Rigid3& T_map_camera_s
   result.T_map_camera = state.T_map_camera;
   result.focal_scale = state.focal_scale;
   const Eigen::LLT<Eigen::Matrix<double, N, N>> llt(final_equations.hessian);
-  const int num_residuals = 2 * result.num_inliers + (problem.options().use_depth ? result.num_depth_inliers : 0);
+  const int num_residuals = 2 * result.num_inliers + (problem.options.use_depth ? result.num_depth_inliers : 0);
   if (static_cast<std::size_t>(result.num_inliers) < kMinInliers || num_residuals <= N || llt.info() != Eigen::Success) return result;
 
   // Residuals larger than the noise model says widen the covariance; smaller ones never shrink it.
@@ -196,10 +154,7 @@ PoseRefinementResult refine(const Problem& problem, const Rigid3& T_map_camera_s
   covariance *= std::max(1.0, reduced_chi_squared);
   if (!covariance.allFinite() || !(covariance.diagonal().minCoeff() > 0.0)) return result;
 
-  Matrix6d to_map_axes = Matrix6d::Zero();
-  to_map_axes.topLeftCorner<3, 3>() = state.T_map_camera.rotation.toRotationMatrix();
-  to_map_axes.bottomRightCorner<3, 3>() = to_map_axes.topLeftCorner<3, 3>();
-  const Matrix6d in_map = to_map_axes * covariance.template topLeftCorner<6, 6>() * to_map_axes.transpose();
+  const Matrix6d in_map = rotate_covariance(state.T_map_camera.rotation, covariance.template topLeftCorner<6, 6>());
   result.covariance = 0.5 * (in_map + in_map.transpose());
   if constexpr (N == 7) result.focal_scale_sigma = std::sqrt(covariance(6, 6));
   result.is_converged = true;
@@ -211,7 +166,7 @@ PoseRefinementResult refine(const Problem& problem, const Rigid3& T_map_camera_s
 PoseRefinementResult refine_pose(const Correspondences& pairs, const Rigid3& T_map_camera_start, double focal_px,
                                  const PoseRefinementOptions& options, std::vector<std::uint8_t>* inlier_mask) {
   if (inlier_mask != nullptr) inlier_mask->assign(pairs.size(), 0);
-  const Problem problem(pairs, focal_px, options);
+  const Problem problem{pairs, focal_px, options};
   return options.estimate_focal_scale ? refine<7>(problem, T_map_camera_start, inlier_mask)
                                       : refine<6>(problem, T_map_camera_start, inlier_mask);
 }

@@ -16,10 +16,8 @@
 namespace camloc {
 
 struct PoseRefinementOptions {
-  int max_iterations = 10;            ///< per pass
-  double max_error_px = 5.0;          ///< pairs farther off take no part in the truncated pass
-  double cauchy_scale = 2.0;          ///< of the normalized residual
-  double max_depth_error_sigmas = 4;  ///< a depth residual farther off is left out (its pixel stays)
+  int max_iterations = 10;    ///< per pass
+  double max_error_px = 5.0;  ///< pairs farther off take no part in the truncated pass
   DepthNoise depth_noise;
   bool use_depth = true;
   bool estimate_focal_scale = false;  ///< adds one unknown: the factor by which the assumed focal length is wrong
@@ -31,13 +29,11 @@ struct PoseRefinementResult {
   Matrix6d covariance =
       Matrix6d::Identity();   ///< of pose_error(): metres then radians, axes of `map`; scaled by the residuals, never below the prior noise
   int num_inliers = 0;        ///< pairs within max_error_px at the end
-  int num_depth_inliers = 0;  ///< of those with depth: residual within max_depth_error_sigmas
+  int num_depth_inliers = 0;  ///< of those with depth: residual within 4 sigmas
   int num_with_depth = 0;     ///< inliers that carry a measured depth
   double rms_px = 0;          ///< of the inliers
   double median_px = 0;       ///< of the inliers
-  double rms_depth_sigmas = 0;           ///< of the depth inliers
-  double mean_relative_depth_error = 0;  ///< mean of (measured - predicted) / predicted over inliers with depth: signed
-  double focal_scale = 1.0;              ///< true focal length / assumed one
+  double focal_scale = 1.0;   ///< true focal length / assumed one
   double focal_scale_sigma = 0.0;
 };
 

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/base/avx2.h"
+
 namespace camloc {
 namespace {
 
@@ -26,9 +28,6 @@ struct KernelInput {
   float squared_focal, max_squared_error;
 };
 
-#define CAMLOC_INLINE inline __attribute__((always_inline))
-
-// Vectors travel by reference only: passing them by value would depend on the instruction set.
 CAMLOC_INLINE void load(const float* source, Floats* lanes) { std::memcpy(lanes, source, sizeof(Floats)); }
 
 CAMLOC_INLINE float sum_of(const Floats& v) { return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7])); }
@@ -62,21 +61,7 @@ CAMLOC_INLINE float cost_kernel(const KernelInput& in, const ScoredPose& pose, f
 }
 
 float cost_baseline(const KernelInput& in, const ScoredPose& pose, float limit) { return cost_kernel(in, pose, limit); }
-
-#if defined(__x86_64__)
-__attribute__((target("avx2"))) float cost_avx2(const KernelInput& in, const ScoredPose& pose, float limit) {
-  return cost_kernel(in, pose, limit);
-}
-#endif
-
-using CostFunction = float (*)(const KernelInput&, const ScoredPose&, float);
-
-CostFunction best_cost_function() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return cost_avx2;
-#endif
-  return cost_baseline;
-}
+CAMLOC_AVX2 float cost_avx2(const KernelInput& in, const ScoredPose& pose, float limit) { return cost_kernel(in, pose, limit); }
 
 std::size_t padded(std::size_t size) { return (size + kLanes - 1) / kLanes * kLanes; }
 
@@ -114,7 +99,7 @@ void PoseScorer::set_pairs(const Correspondences& pairs, std::size_t count, doub
 }
 
 float PoseScorer::cost(const ScoredPose& pose, float limit) const {
-  static const CostFunction function = best_cost_function();
+  static const auto function = has_avx2() ? cost_avx2 : cost_baseline;
   const KernelInput input{x_.data(),     y_.data(),     X_.data(),     Y_.data(),      Z_.data(),
                           min_z_.data(), max_z_.data(), padded(size_), squared_focal_, max_squared_error_};
   return function(input, pose, limit);

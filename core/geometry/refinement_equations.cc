@@ -10,7 +10,8 @@
 #include <cstdint>
 #include <cstring>
 
-#include "core/geometry/reprojection_sums.h"
+#include "core/base/avx2.h"
+#include "core/geometry/pose_jacobian.h"
 
 namespace camloc {
 namespace {
@@ -23,8 +24,6 @@ using Doubles = double __attribute__((vector_size(kLanes * sizeof(double))));
 using Floats = float __attribute__((vector_size(kLanes * sizeof(float))));
 using Mask = std::int64_t __attribute__((vector_size(kLanes * sizeof(std::int64_t))));
 
-#define CAMLOC_INLINE inline __attribute__((always_inline))
-
 struct KernelInput {
   const float *x, *y, *X, *Y, *Z, *depth, *sigma;
   std::size_t size;
@@ -34,7 +33,7 @@ struct KernelInput {
   RefinementModel model;
 };
 
-/// Four pairs. Vectors travel by reference only: passing them by value would depend on the instruction set.
+/// Four pairs.
 struct Pairs {
   Doubles x, y, X, Y, Z, depth, sigma;
   Mask is_real;  ///< all but the padding of the last four
@@ -228,22 +227,9 @@ void sum_up_baseline(const KernelInput& in, NormalEquations<N>* equations) {
   sum_up_any<N>(in, equations);
 }
 
-#if defined(__x86_64__)
 template <int N>
-__attribute__((target("avx2"))) void sum_up_avx2(const KernelInput& in, NormalEquations<N>* equations) {
+CAMLOC_AVX2 void sum_up_avx2(const KernelInput& in, NormalEquations<N>* equations) {
   sum_up_any<N>(in, equations);
-}
-#endif
-
-template <int N>
-using SumFunction = void (*)(const KernelInput&, NormalEquations<N>*);
-
-template <int N>
-SumFunction<N> best_sum_function() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2")) return sum_up_avx2<N>;
-#endif
-  return sum_up_baseline<N>;
 }
 
 }  // namespace
@@ -251,7 +237,7 @@ SumFunction<N> best_sum_function() {
 template <int N>
 NormalEquations<N> normal_equations(const Correspondences& pairs, const RefinementModel& model, const Rigid3& T_map_camera,
                                     double focal_scale) {
-  static const SumFunction<N> function = best_sum_function<N>();
+  static const auto function = has_avx2() ? sum_up_avx2<N> : sum_up_baseline<N>;
   KernelInput in{pairs.x.data(),
                  pairs.y.data(),
                  pairs.X.data(),
@@ -264,11 +250,8 @@ NormalEquations<N> normal_equations(const Correspondences& pairs, const Refineme
                  {},
                  focal_scale,
                  model};
-  const Eigen::Matrix3d R_camera_map = T_map_camera.rotation.conjugate().toRotationMatrix();
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) in.R[3 * row + column] = R_camera_map(row, column);
-    in.centre[row] = T_map_camera.translation[row];
-  }
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(in.R) = T_map_camera.rotation.conjugate().toRotationMatrix();
+  Eigen::Map<Eigen::Vector3d>(in.centre) = T_map_camera.translation;
   NormalEquations<N> equations;
   function(in, &equations);
   return equations;

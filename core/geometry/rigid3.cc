@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// Composition and the exponential map of rigid transforms.
 #include "core/geometry/rigid3.h"
 
 #include <Eigen/SVD>
@@ -27,6 +25,12 @@ Rigid3 operator*(const Rigid3& T_a_b, const Rigid3& T_b_c) {
 }
 
 Eigen::Vector3d operator*(const Rigid3& T_a_b, const Eigen::Vector3d& p_b) { return T_a_b.rotation * p_b + T_a_b.translation; }
+
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
 
 Eigen::Quaterniond exp_so3(const Eigen::Vector3d& rotation_vector_rad) {
   const double angle_squared = rotation_vector_rad.squaredNorm();

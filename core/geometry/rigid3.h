@@ -34,6 +34,9 @@ struct Rigid3 {
 [[nodiscard]] Rigid3 operator*(const Rigid3& T_a_b, const Rigid3& T_b_c);
 [[nodiscard]] Eigen::Vector3d operator*(const Rigid3& T_a_b, const Eigen::Vector3d& p_b);
 
+/// cross_matrix(a) * b = a x b.
+[[nodiscard]] Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v);
+
 /// Rotation vector (axis times angle, radians) to quaternion and back; exact near zero.
 [[nodiscard]] Eigen::Quaterniond exp_so3(const Eigen::Vector3d& rotation_vector_rad);
 [[nodiscard]] Eigen::Vector3d log_so3(const Eigen::Quaterniond& rotation);

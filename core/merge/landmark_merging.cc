@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <tuple>
-#include <unordered_map>
 
 #include "core/features/hamming.h"
 
@@ -34,14 +34,6 @@ using Voxel = std::array<std::int64_t, 3>;
 Voxel voxel_of(const Eigen::Vector3f& p) {
   const auto cell = [](float v) { return static_cast<std::int64_t>(std::floor(static_cast<double>(v) / kVoxelM)); };
   return {cell(p.x()), cell(p.y()), cell(p.z())};
-}
-
-std::uint64_t voxel_key(const Voxel& v) {
-  constexpr std::int64_t kOffset = 1 << 20;
-  constexpr std::uint64_t kMask = (1U << 21) - 1;
-  std::uint64_t key = 0;
-  for (const std::int64_t cell : v) key = (key << 21) | (static_cast<std::uint64_t>(cell + kOffset) & kMask);
-  return key;
 }
 
 int closest_appearances(const MapLandmark& i, const MapLandmark& j) {
@@ -77,7 +69,7 @@ struct Offset {
 class SameLandmarkFinder {
  public:
   SameLandmarkFinder(const MapData& a, const MapData& b) : a_(a), b_(b) {
-    for (std::uint32_t i = 0; i < a.landmarks.size(); ++i) voxels_[voxel_key(voxel_of(a.landmarks[i].position_m))].push_back(i);
+    for (std::uint32_t i = 0; i < a.landmarks.size(); ++i) voxels_[voxel_of(a.landmarks[i].position_m)].push_back(i);
   }
 
   [[nodiscard]] std::vector<SameLandmark> find() const {
@@ -94,9 +86,9 @@ class SameLandmarkFinder {
         const int distance = closest_appearances(b_.landmarks[i], a_.landmarks[j]);
         const Offset offset = offset_of(a_.landmarks[j], b_.landmarks[i], T_camera_map);
         if (is_alike(a_.landmarks[j], b_.landmarks[i], offset, distance))
-          pairs.push_back({static_cast<double>(distance), {i, j, distance}});
+          pairs.push_back({static_cast<double>(distance), {i, j}});
         else if (is_same_place(a_.landmarks[j], b_.landmarks[i], offset, distance))
-          pairs.push_back({256 + offset.px, {i, j, distance}});
+          pairs.push_back({256 + offset.px, {i, j}});
       });
     }
     std::sort(pairs.begin(), pairs.end(),
@@ -117,7 +109,7 @@ class SameLandmarkFinder {
   void for_each_near(const Eigen::Vector3f& p, const Visit& visit) const {
     const Voxel center = voxel_of(p);
     for (int offset = 0; offset < 27; ++offset) {
-      const auto found = voxels_.find(voxel_key({center[0] + offset % 3 - 1, center[1] + offset / 3 % 3 - 1, center[2] + offset / 9 - 1}));
+      const auto found = voxels_.find({center[0] + offset % 3 - 1, center[1] + offset / 3 % 3 - 1, center[2] + offset / 9 - 1});
       if (found == voxels_.end()) continue;
       for (const std::uint32_t j : found->second) visit(j);
     }
@@ -152,7 +144,7 @@ class SameLandmarkFinder {
 
   const MapData& a_;
   const MapData& b_;
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> voxels_;  ///< looked up only, never iterated
+  std::map<Voxel, std::vector<std::uint32_t>> voxels_;
 };
 
 /// Mean direction, and a cone around it that holds both cones.

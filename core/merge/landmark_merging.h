@@ -16,7 +16,6 @@ namespace camloc {
 /// Pairs of a landmark of `b`, already in the frame of `a`, and the landmark of `a` it is; each occurs once, ascending by b.
 struct SameLandmark {
   std::uint32_t b = 0, a = 0;
-  int distance = 0;  ///< of the closest two appearances
 };
 [[nodiscard]] std::vector<SameLandmark> find_same_landmarks(const MapData& a, const MapData& b);
 

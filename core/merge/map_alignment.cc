@@ -42,15 +42,12 @@ class Components {
 
 /// The fewer landmarks two keyframes share, the worse they know their relative pose.
 void add_links(const MapData& b, PoseGraph* graph, Components* components) {
-  const auto covisible = find_covisible_keyframes(b, kMinShared);
+  auto covisible = find_covisible_keyframes(b, kMinShared);
+  for (auto& others : covisible) others.resize(std::min(kMaxLinks, others.size()));
   for (std::uint32_t k = 0; k < covisible.size(); ++k) {
-    std::size_t num_links = 0;
-    for (const SharedLandmarks& other : covisible[k]) {
-      if (num_links++ == kMaxLinks) break;
-      const bool is_mutual = std::any_of(
-          covisible[other.keyframe].begin(),
-          covisible[other.keyframe].begin() + static_cast<std::ptrdiff_t>(std::min(kMaxLinks, covisible[other.keyframe].size())),
-          [&](const SharedLandmarks& s) { return s.keyframe == k; });
+    for (const CovisibleKeyframe& other : covisible[k]) {
+      const auto& back = covisible[other.keyframe];
+      const bool is_mutual = std::any_of(back.begin(), back.end(), [&](const CovisibleKeyframe& s) { return s.keyframe == k; });
       if (is_mutual && other.keyframe < k) continue;  // was added from the other side
       graph->edges.push_back(link(graph->T_map_pose, k, other.keyframe, other.num_shared));
       components->join(k, other.keyframe);
@@ -136,11 +133,8 @@ MapAlignmentReport align_map(std::span<const KeyframeFix> fixes, MapData* b) {
                                      [](const KeyframeFix& i, const KeyframeFix& j) { return i.num_inliers < j.num_inliers; });
   const Rigid3 T_a_b = best->T_a_camera * b->keyframes[best->keyframe].T_map_camera.inverse();
   for (Rigid3& T : graph.T_map_pose) T = T_a_b * T;
-  PoseGraphOptions options;
-  options.kernel_sigmas = 0;  // all of it first: a kernel would hold far fixes for wrong before the map has bent
-  optimize_pose_graph(options, &graph);
-  options.kernel_sigmas = kKernelSigmas;
-  optimize_pose_graph(options, &graph);
+  optimize_pose_graph(&graph);  // all of it first: a kernel would hold far fixes for wrong before the map has bent
+  optimize_pose_graph(&graph, kKernelSigmas);
 
   MapAlignmentReport report;
   std::vector<double> residuals_m, residuals_rad;

@@ -1,5 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Read merge_maps() first. Keyframes of B are registered in A (map_registration), B is bent until they fit (map_alignment), landmarks
+// of B that are one of A's are merged into it (landmark_merging), and the union is assembled as any map is.
 #include "core/merge/map_merging.h"
 
 #include <algorithm>
@@ -105,12 +108,9 @@ WcsDatum carried_over(const WcsDatum& T_wcs_b, const MapAlignmentReport& alignme
   // pose_error() of the inverse: the same turn the other way, seen from b.
   const Rigid3 T_b_a = alignment.T_a_b.inverse();
   const Eigen::Matrix3d R = T_b_a.rotation.toRotationMatrix();
-  const Eigen::Vector3d t = alignment.T_a_b.translation;
-  Eigen::Matrix3d cross;
-  cross << 0, -t.z(), t.y(), t.z(), 0, -t.x(), -t.y(), t.x(), 0;
   Matrix6d J = Matrix6d::Zero();
   J.topLeftCorner<3, 3>() = -R;
-  J.topRightCorner<3, 3>() = -R * cross;
+  J.topRightCorner<3, 3>() = -R * cross_matrix(alignment.T_a_b.translation);
   J.bottomRightCorner<3, 3>() = -R;
   const PoseWithCovariance T_wcs_a = to_wcs(T_wcs_b, {T_b_a, J * alignment.covariance * J.transpose()});
   return {T_wcs_a.pose, T_wcs_a.covariance};
@@ -127,7 +127,7 @@ Result<MapData> merge_maps(const MapView& a, const MapData& b, const MapMergeOpt
   report->num_landmarks_a = static_cast<std::uint32_t>(first.landmarks.size());
   report->num_landmarks_b = static_cast<std::uint32_t>(b.landmarks.size());
 
-  const auto fixes = register_map(a, first, b, options.registration, observer, &report->registration);
+  const auto fixes = register_map(a, first, b, observer, &report->registration);
   if (!fixes.is_ok()) return fixes.status();
   report->num_localized = static_cast<std::uint32_t>(fixes.value().size());
   MapData second = b;

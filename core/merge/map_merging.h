@@ -30,7 +30,6 @@ namespace camloc {
 }
 
 struct MapMergeOptions {
-  MapRegistrationOptions registration;
   MapBuildOptions map = merged_map_options();  ///< its ORB settings are taken from the maps
 };
 

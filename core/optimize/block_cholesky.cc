@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// Analysis, factorization and solution.
 #include "core/optimize/block_cholesky.h"
 
 #include <Eigen/Cholesky>

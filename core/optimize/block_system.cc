@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// Storage and factorization of the block system.
 #include "core/optimize/block_system.h"
 
 #include <Eigen/Cholesky>
@@ -25,21 +23,18 @@ BlockSystem::BlockSystem(std::uint32_t num_blocks)
     : num_blocks_(num_blocks),
       is_sparse_(false),
       blocks_(kBlockDoubles * num_blocks * (std::size_t{num_blocks} + 1) / 2),
-      gradient_(num_blocks) {
+      gradient_(num_blocks),
+      diagonal_(num_blocks),
+      pattern_(0) {
   set_zero();
 }
 
 BlockSystem::BlockSystem(const BlockPattern& pattern)
-    : num_blocks_(pattern.num_blocks()),
-      is_sparse_(true),
-      gradient_(num_blocks_),
-      words_per_column_(pattern.words_per_column()),
-      words_(pattern.words()),
-      blocks_before_word_(words_.size()) {
+    : num_blocks_(pattern.num_blocks()), is_sparse_(true), gradient_(num_blocks_), diagonal_(num_blocks_), pattern_(pattern) {
   std::uint32_t count = 0;
-  for (std::size_t i = 0; i < words_.size(); ++i) {
-    blocks_before_word_[i] = count;
-    count += static_cast<std::uint32_t>(std::popcount(words_[i]));
+  for (const std::uint64_t word : pattern_.words_) {
+    blocks_before_word_.push_back(count);
+    count += static_cast<std::uint32_t>(std::popcount(word));
   }
   blocks_.resize(kBlockDoubles * count);
   set_zero();
@@ -48,15 +43,16 @@ BlockSystem::BlockSystem(const BlockPattern& pattern)
 void BlockSystem::set_zero() {
   std::fill(blocks_.begin(), blocks_.end(), 0.0);
   std::fill(gradient_.begin(), gradient_.end(), Vector6d::Zero());
+  std::fill(diagonal_.begin(), diagonal_.end(), Vector6d::Zero());
 }
 
 std::size_t BlockSystem::index_of(std::uint32_t row, std::uint32_t column) const {
   assert(row <= column && column < num_blocks_);
   if (!is_sparse_) return std::size_t{column} * (std::size_t{column} + 1) / 2 + row;
-  const std::size_t word = column * words_per_column_ + row / 64;
-  const std::uint64_t bit = std::uint64_t{1} << (row % 64);
-  assert((words_[word] & bit) != 0);
-  return blocks_before_word_[word] + static_cast<std::size_t>(std::popcount(words_[word] & (bit - 1)));
+  assert(pattern_.has(row, column));
+  const std::size_t word = column * pattern_.words_per_column_ + row / 64;
+  const std::uint64_t before = (std::uint64_t{1} << (row % 64)) - 1;
+  return blocks_before_word_[word] + static_cast<std::size_t>(std::popcount(pattern_.words_[word] & before));
 }
 
 bool BlockSystem::solve(std::vector<Vector6d>* x) {
@@ -85,20 +81,16 @@ bool BlockSystem::solve_dense(Eigen::VectorXd* x) {
   return true;
 }
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> BlockSystem::block_positions() const {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> positions;
-  for (std::size_t i = 0; i < words_.size(); ++i) {
-    const auto column = static_cast<std::uint32_t>(i / words_per_column_);
-    for (std::uint64_t bits = words_[i]; bits != 0; bits &= bits - 1) {
-      const auto row = 64 * (i % words_per_column_) + static_cast<std::size_t>(std::countr_zero(bits));
-      positions.emplace_back(static_cast<std::uint32_t>(row), column);
-    }
-  }
-  return positions;
-}
-
 bool BlockSystem::solve_sparse(Eigen::VectorXd* x) {
-  if (!cholesky_) cholesky_.emplace(num_blocks_, block_positions());
+  if (!cholesky_) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> positions;
+    for (std::uint32_t column = 0; column < num_blocks_; ++column) {
+      for (std::uint32_t row = 0; row <= column; ++row) {
+        if (pattern_.has(row, column)) positions.emplace_back(row, column);
+      }
+    }
+    cholesky_.emplace(num_blocks_, positions);
+  }
   if (!cholesky_->factorize(blocks_.data())) return false;
   cholesky_->solve(x);
   return true;

@@ -6,6 +6,7 @@
 // sparse; where the blocks are is decided once.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -24,10 +25,9 @@ class BlockPattern {
     return (words_[column * words_per_column_ + row / 64] >> (row % 64) & 1U) != 0;
   }
   [[nodiscard]] std::uint32_t num_blocks() const { return num_blocks_; }
-  [[nodiscard]] std::size_t words_per_column() const { return words_per_column_; }
-  [[nodiscard]] const std::vector<std::uint64_t>& words() const { return words_; }
 
  private:
+  friend class BlockSystem;
   std::uint32_t num_blocks_;
   std::size_t words_per_column_;
   std::vector<std::uint64_t> words_;
@@ -50,7 +50,8 @@ class BlockSystem {
   /// triangle counts.
   [[nodiscard]] double* block(std::uint32_t row, std::uint32_t column) { return blocks_.data() + kBlockDoubles * index_of(row, column); }
   [[nodiscard]] Vector6d& gradient(std::uint32_t row) { return gradient_[row]; }
-  [[nodiscard]] const Vector6d& gradient(std::uint32_t row) const { return gradient_[row]; }
+  /// Of the terms' own blocks, before an elimination: what Marquardt's damping needs. It is no part of H.
+  [[nodiscard]] Vector6d& diagonal(std::uint32_t row) { return diagonal_[row]; }
 
   /// False where H is not positive definite; `x` has then no meaning.
   [[nodiscard]] bool solve(std::vector<Vector6d>* x);
@@ -59,19 +60,32 @@ class BlockSystem {
   [[nodiscard]] std::size_t index_of(std::uint32_t row, std::uint32_t column) const;
   bool solve_dense(Eigen::VectorXd* x);
   bool solve_sparse(Eigen::VectorXd* x);
-  [[nodiscard]] std::vector<std::pair<std::uint32_t, std::uint32_t>> block_positions() const;
 
   std::uint32_t num_blocks_;
   bool is_sparse_;
   std::vector<double> blocks_;  ///< column by column, rows ascending
-  std::vector<Vector6d> gradient_;
-  // Sparse: bits of the pattern with the number of blocks before each word, so that a look-up is a count of bits.
-  std::size_t words_per_column_ = 0;
-  std::vector<std::uint64_t> words_;
+  std::vector<Vector6d> gradient_, diagonal_;
+  // Sparse: the pattern with the number of blocks before each word, so that a look-up is a count of bits.
+  BlockPattern pattern_;
   std::vector<std::uint32_t> blocks_before_word_;
 
   Eigen::MatrixXd dense_;
   std::optional<BlockCholesky> cholesky_;
 };
+
+/// In place of a row, for a pose that is held.
+inline constexpr std::uint32_t kFixedPose = 0xffffffff;
+
+/// The row of each pose: those that are not fixed, numbered in their order.
+[[nodiscard]] inline std::vector<std::uint32_t> rows_of_poses(const std::vector<std::uint8_t>& is_fixed) {
+  std::vector<std::uint32_t> rows;
+  std::uint32_t num_free = 0;
+  for (const std::uint8_t fixed : is_fixed) rows.push_back(fixed != 0 ? kFixedPose : num_free++);
+  return rows;
+}
+
+[[nodiscard]] inline std::uint32_t num_free_poses(const std::vector<std::uint32_t>& rows) {
+  return static_cast<std::uint32_t>(std::count_if(rows.begin(), rows.end(), [](std::uint32_t row) { return row != kFixedPose; }));
+}
 
 }  // namespace camloc

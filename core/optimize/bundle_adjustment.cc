@@ -33,8 +33,56 @@ std::vector<PointPrior> sorted_priors(const std::vector<PointPrior>& priors) {
 
 class BundleAdjuster {
  public:
-  BundleAdjuster(const BundleOptions& options, BundleProblem* problem);
-  BundleReport run(const BundleCallback& on_iteration);
+  BundleAdjuster(const BundleOptions& options, BundleProblem* problem)
+      : options_(options),
+        problem_(*problem),
+        priors_(sorted_priors(problem->priors)),
+        links_(problem->links, kLinkKernelSigmas),
+        pose_terms_{&links_},
+        rows_(rows_of_poses(problem->is_camera_fixed)),
+        num_landmarks_(static_cast<std::uint32_t>(problem->landmarks_m.size())),
+        num_free_(num_free_poses(rows_)) {
+    pose_terms_.insert(pose_terms_.end(), problem->pose_terms.begin(), problem->pose_terms.end());
+    if (num_free_ > options.max_dense_cameras)
+      equations_.emplace(covisibility());
+    else
+      equations_.emplace(num_free_);
+  }
+
+  BundleReport run(const BundleCallback& on_iteration) {
+    BundleReport report;
+    report.is_sparse = equations_->is_sparse();
+    state_ = {std::move(problem_.T_map_camera), std::move(problem_.landmarks_m)};
+    double damping = kFirstDamping;
+    double cost = linearize(state_, damping);
+    report.initial_cost = cost;
+    report.is_converged = cost == 0.0;
+    while (!report.is_converged && !report.is_stopped && report.num_iterations < options_.max_iterations) {
+      const bool is_last = ++report.num_iterations == options_.max_iterations;
+      const double less_damping = std::max(damping * kLessDamping, kMinDamping);
+      double trial_cost = std::numeric_limits<double>::infinity();
+      if (solve(damping)) {
+        step(damping);
+        trial_cost = is_last ? cost_of(trial_) : linearize(trial_, less_damping);
+      }
+      if (trial_cost <= cost) {
+        report.is_converged = cost - trial_cost <= options_.min_relative_decrease * cost;
+        std::swap(state_, trial_);
+        cost = trial_cost;
+        damping = less_damping;
+      } else {
+        damping *= kMoreDamping;
+        report.is_converged = damping > kMaxDamping;  // no step however small lowers the cost
+        if (!is_last && !report.is_converged) linearize(state_, damping);
+      }
+      report.is_stopped = on_iteration && !on_iteration(report.num_iterations, cost);
+    }
+    report.final_cost = cost;
+    problem_.T_map_camera = std::move(state_.T_map_camera);
+    problem_.landmarks_m = std::move(state_.landmarks_m);
+    place_landmarks_seen_once();
+    return report;
+  }
 
  private:
   struct State {
@@ -44,14 +92,102 @@ class BundleAdjuster {
 
   /// Calls visit(index, observations) for every landmark that takes part: with two observations or a prior.
   template <class Visit>
-  void for_each_landmark(const Visit& visit) const;
-  [[nodiscard]] std::vector<BundleCamera> cameras_of(const std::vector<Rigid3>& T_map_camera) const;
-  [[nodiscard]] BlockPattern covisibility() const;
-  double linearize(const State& state, double damping);
-  [[nodiscard]] double cost_of(const State& state) const;
-  bool solve(double damping);
-  void step(double damping);
-  void place_landmarks_seen_once();
+  void for_each_landmark(const Visit& visit) const {
+    const std::span<const BundleObservation> observations = problem_.observations;
+    const std::span<const PointPrior> priors = priors_;
+    std::size_t o = 0, p = 0;
+    for (std::uint32_t i = 0; i < num_landmarks_; ++i) {
+      const std::size_t first_o = o, first_p = p;
+      while (o < observations.size() && observations[o].landmark == i) ++o;
+      while (p < priors.size() && priors[p].landmark == i) ++p;
+      const LandmarkObservations landmark{observations.subspan(first_o, o - first_o), priors.subspan(first_p, p - first_p)};
+      if (landmark.observations.size() >= 2 || !landmark.priors.empty()) visit(i, landmark);
+    }
+  }
+
+  std::vector<BundleCamera> cameras_of(const std::vector<Rigid3>& T_map_camera) const {
+    std::vector<BundleCamera> cameras;
+    cameras.reserve(T_map_camera.size());
+    for (std::size_t i = 0; i < T_map_camera.size(); ++i) cameras.emplace_back(T_map_camera[i], rows_[i]);
+    return cameras;
+  }
+
+  BlockPattern covisibility() const {
+    BlockPattern pattern(num_free_);
+    for_each_landmark([&](std::uint32_t, const LandmarkObservations& landmark) {
+      for (const BundleObservation& a : landmark.observations) {
+        if (rows_[a.camera] == kFixedPose) continue;
+        for (const BundleObservation& b : landmark.observations) {
+          if (&b == &a) break;
+          if (rows_[b.camera] != kFixedPose) pattern.add(rows_[a.camera], rows_[b.camera]);
+        }
+      }
+    });
+    for (const PoseTerms* terms : pose_terms_) terms->mark(rows_, &pattern);
+    return pattern;
+  }
+
+  double linearize(const State& state, double damping) {
+    const std::vector<BundleCamera> cameras = cameras_of(state.T_map_camera);
+    LandmarkEliminator eliminator(options_, cameras);
+    equations_->set_zero();
+    double cost = 0;
+    for_each_landmark([&](std::uint32_t i, const LandmarkObservations& landmark) {
+      cost += eliminator.eliminate(landmark, state.landmarks_m[i], damping, &*equations_);
+    });
+    for (const PoseTerms* terms : pose_terms_) cost = terms->add(state.T_map_camera, rows_, cost, &*equations_);
+    return cost;
+  }
+
+  double cost_of(const State& state) const {
+    const std::vector<BundleCamera> cameras = cameras_of(state.T_map_camera);
+    const LandmarkEliminator eliminator(options_, cameras);
+    double cost = 0;
+    for_each_landmark(
+        [&](std::uint32_t i, const LandmarkObservations& landmark) { cost += eliminator.cost(landmark, state.landmarks_m[i]); });
+    for (const PoseTerms* terms : pose_terms_) cost = terms->add_cost(state.T_map_camera, cost);
+    return cost;
+  }
+
+  /// The cameras' steps from the system as it was linearized; a camera that sees nothing keeps its place.
+  bool solve(double damping) {
+    for (std::uint32_t i = 0; i < num_free_; ++i) {
+      Eigen::Map<Matrix6d> block(equations_->block(i, i));
+      for (int k = 0; k < 6; ++k) {
+        const double diagonal = equations_->diagonal(i)[k];
+        block(k, k) += diagonal > 0 ? damping * diagonal : 1.0;
+      }
+    }
+    return equations_->solve(&camera_steps_);
+  }
+
+  /// Moves the trial to where the cameras' steps lead; the landmarks follow.
+  void step(double damping) {
+    trial_ = state_;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (rows_[i] == kFixedPose) continue;
+      trial_.T_map_camera[i] = moved_in_camera_axes(state_.T_map_camera[i], camera_steps_[rows_[i]]);
+    }
+    const std::vector<BundleCamera> cameras = cameras_of(state_.T_map_camera);
+    const LandmarkEliminator eliminator(options_, cameras);
+    for_each_landmark([&](std::uint32_t i, const LandmarkObservations& landmark) {
+      trial_.landmarks_m[i] += eliminator.step(landmark, state_.landmarks_m[i], damping, camera_steps_);
+    });
+  }
+
+  /// A landmark with one observation does not move a camera; with depth it is where that observation says.
+  void place_landmarks_seen_once() {
+    const auto& observations = problem_.observations;
+    for (std::size_t i = 0; i < observations.size(); ++i) {
+      const BundleObservation& o = observations[i];
+      const bool is_alone = (i == 0 || observations[i - 1].landmark != o.landmark) &&
+                            (i + 1 == observations.size() || observations[i + 1].landmark != o.landmark);
+      if (!is_alone || !DepthTerm::is_measured(options_, o) || !std::isfinite(o.x) || !std::isfinite(o.y)) continue;
+      const bool has_prior = std::binary_search(priors_.begin(), priors_.end(), PointPrior{o.landmark, {}, 0}, is_before);
+      if (has_prior || !problem_.T_map_camera[o.camera].translation.allFinite()) continue;
+      problem_.landmarks_m[o.landmark] = problem_.T_map_camera[o.camera] * (o.depth_m * Eigen::Vector3d(o.x, o.y, 1));
+    }
+  }
 
   const BundleOptions& options_;
   BundleProblem& problem_;
@@ -60,161 +196,10 @@ class BundleAdjuster {
   std::vector<const PoseTerms*> pose_terms_;  ///< links, and what else the problem brings
   std::vector<std::uint32_t> rows_;           ///< of the cameras
   std::uint32_t num_landmarks_, num_free_;
-  std::optional<PoseEquations> equations_;
+  std::optional<BlockSystem> equations_;
   State state_, trial_;
   std::vector<Vector6d> camera_steps_;
 };
-
-BundleAdjuster::BundleAdjuster(const BundleOptions& options, BundleProblem* problem)
-    : options_(options),
-      problem_(*problem),
-      priors_(sorted_priors(problem->priors)),
-      links_(problem->links, kLinkKernelSigmas),
-      pose_terms_{&links_},
-      rows_(rows_of_poses(problem->is_camera_fixed)),
-      num_landmarks_(static_cast<std::uint32_t>(problem->landmarks_m.size())),
-      num_free_(num_free_poses(rows_)) {
-  pose_terms_.insert(pose_terms_.end(), problem->pose_terms.begin(), problem->pose_terms.end());
-  if (num_free_ > options.max_dense_cameras)
-    equations_.emplace(covisibility());
-  else
-    equations_.emplace(num_free_);
-}
-
-template <class Visit>
-void BundleAdjuster::for_each_landmark(const Visit& visit) const {
-  const BundleObservation* observation = problem_.observations.data();
-  const BundleObservation* const observations_end = observation + problem_.observations.size();
-  const PointPrior* prior = priors_.data();
-  const PointPrior* const priors_end = prior + priors_.size();
-  for (std::uint32_t i = 0; i < num_landmarks_; ++i) {
-    LandmarkObservations landmark{observation, observation, prior, prior};
-    while (landmark.end != observations_end && landmark.end->landmark == i) ++landmark.end;
-    while (landmark.priors_end != priors_end && landmark.priors_end->landmark == i) ++landmark.priors_end;
-    if (landmark.end - landmark.begin >= 2 || landmark.priors_end != landmark.priors_begin) visit(i, landmark);
-    observation = landmark.end;
-    prior = landmark.priors_end;
-  }
-}
-
-std::vector<BundleCamera> BundleAdjuster::cameras_of(const std::vector<Rigid3>& T_map_camera) const {
-  std::vector<BundleCamera> cameras;
-  cameras.reserve(T_map_camera.size());
-  for (std::size_t i = 0; i < T_map_camera.size(); ++i) cameras.emplace_back(T_map_camera[i], rows_[i]);
-  return cameras;
-}
-
-BlockPattern BundleAdjuster::covisibility() const {
-  BlockPattern pattern(num_free_);
-  for_each_landmark([&](std::uint32_t, const LandmarkObservations& landmark) {
-    for (const BundleObservation* a = landmark.begin; a != landmark.end; ++a) {
-      if (rows_[a->camera] == kFixedPose) continue;
-      for (const BundleObservation* b = landmark.begin; b != a; ++b) {
-        if (rows_[b->camera] != kFixedPose) pattern.add(rows_[a->camera], rows_[b->camera]);
-      }
-    }
-  });
-  for (const PoseTerms* terms : pose_terms_) terms->mark(rows_, &pattern);
-  return pattern;
-}
-
-double BundleAdjuster::linearize(const State& state, double damping) {
-  const std::vector<BundleCamera> cameras = cameras_of(state.T_map_camera);
-  LandmarkEliminator eliminator(options_, cameras);
-  equations_->set_zero();
-  double cost = 0;
-  for_each_landmark([&](std::uint32_t i, const LandmarkObservations& landmark) {
-    cost += eliminator.eliminate(landmark, state.landmarks_m[i], damping, &*equations_);
-  });
-  for (const PoseTerms* terms : pose_terms_) cost = terms->add(state.T_map_camera, rows_, cost, &*equations_);
-  return cost;
-}
-
-double BundleAdjuster::cost_of(const State& state) const {
-  const std::vector<BundleCamera> cameras = cameras_of(state.T_map_camera);
-  const LandmarkEliminator eliminator(options_, cameras);
-  double cost = 0;
-  for_each_landmark(
-      [&](std::uint32_t i, const LandmarkObservations& landmark) { cost += eliminator.cost(landmark, state.landmarks_m[i]); });
-  for (const PoseTerms* terms : pose_terms_) cost = terms->add_cost(state.T_map_camera, cost);
-  return cost;
-}
-
-/// The cameras' steps from the system as it was linearized; a camera that sees nothing keeps its place.
-bool BundleAdjuster::solve(double damping) {
-  for (std::uint32_t i = 0; i < num_free_; ++i) {
-    Eigen::Map<Matrix6d> block(equations_->system.block(i, i));
-    for (int k = 0; k < 6; ++k) {
-      const double diagonal = equations_->diagonal[i][k];
-      block(k, k) += diagonal > 0 ? damping * diagonal : 1.0;
-    }
-  }
-  return equations_->system.solve(&camera_steps_);
-}
-
-/// Moves the trial to where the cameras' steps lead; the landmarks follow.
-void BundleAdjuster::step(double damping) {
-  trial_ = state_;
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    if (rows_[i] == kFixedPose) continue;
-    trial_.T_map_camera[i] = moved_in_camera_axes(state_.T_map_camera[i], camera_steps_[rows_[i]]);
-  }
-  const std::vector<BundleCamera> cameras = cameras_of(state_.T_map_camera);
-  const LandmarkEliminator eliminator(options_, cameras);
-  for_each_landmark([&](std::uint32_t i, const LandmarkObservations& landmark) {
-    trial_.landmarks_m[i] += eliminator.step(landmark, state_.landmarks_m[i], damping, camera_steps_);
-  });
-}
-
-/// A landmark with one observation does not move a camera; with depth it is where that observation says.
-void BundleAdjuster::place_landmarks_seen_once() {
-  const auto& observations = problem_.observations;
-  for (std::size_t i = 0; i < observations.size(); ++i) {
-    const BundleObservation& o = observations[i];
-    const bool is_alone = (i == 0 || observations[i - 1].landmark != o.landmark) &&
-                          (i + 1 == observations.size() || observations[i + 1].landmark != o.landmark);
-    if (!is_alone || !DepthTerm::is_measured(options_, o) || !std::isfinite(o.x) || !std::isfinite(o.y)) continue;
-    const bool has_prior = std::binary_search(priors_.begin(), priors_.end(), PointPrior{o.landmark, {}, 0}, is_before);
-    if (has_prior || !problem_.T_map_camera[o.camera].translation.allFinite()) continue;
-    problem_.landmarks_m[o.landmark] = problem_.T_map_camera[o.camera] * (o.depth_m * Eigen::Vector3d(o.x, o.y, 1));
-  }
-}
-
-BundleReport BundleAdjuster::run(const BundleCallback& on_iteration) {
-  BundleReport report;
-  report.num_free_cameras = num_free_;
-  report.is_sparse = equations_->system.is_sparse();
-  state_ = {std::move(problem_.T_map_camera), std::move(problem_.landmarks_m)};
-  double damping = kFirstDamping;
-  double cost = linearize(state_, damping);
-  report.initial_cost = cost;
-  report.is_converged = cost == 0.0;
-  while (!report.is_converged && !report.is_stopped && report.num_iterations < options_.max_iterations) {
-    const bool is_last = ++report.num_iterations == options_.max_iterations;
-    const double less_damping = std::max(damping * kLessDamping, kMinDamping);
-    double trial_cost = std::numeric_limits<double>::infinity();
-    if (solve(damping)) {
-      step(damping);
-      trial_cost = is_last ? cost_of(trial_) : linearize(trial_, less_damping);
-    }
-    if (trial_cost <= cost) {
-      report.is_converged = cost - trial_cost <= options_.min_relative_decrease * cost;
-      std::swap(state_, trial_);
-      cost = trial_cost;
-      damping = less_damping;
-    } else {
-      damping *= kMoreDamping;
-      report.is_converged = damping > kMaxDamping;  // no step however small lowers the cost
-      if (!is_last && !report.is_converged) linearize(state_, damping);
-    }
-    report.is_stopped = on_iteration && !on_iteration(report.num_iterations, cost);
-  }
-  report.final_cost = cost;
-  problem_.T_map_camera = std::move(state_.T_map_camera);
-  problem_.landmarks_m = std::move(state_.landmarks_m);
-  place_landmarks_seen_once();
-  return report;
-}
 
 }  // namespace
 

@@ -26,7 +26,6 @@ namespace camloc {
 struct BundleReport {
   int num_iterations = 0;
   double initial_cost = 0, final_cost = 0;
-  std::uint32_t num_free_cameras = 0;
   bool is_sparse = false;
   bool is_converged = false;
   bool is_stopped = false;  ///< on_iteration said so

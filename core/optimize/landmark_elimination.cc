@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -43,6 +44,54 @@ inline void prefetch_block(const double* block) {
   constexpr int kCacheLineDoubles = 8;
   for (int k = 0; k < 36 + kCacheLineDoubles; k += kCacheLineDoubles) __builtin_prefetch(block + std::min(k, 35), 1);
 }
+
+/// Symmetric block of a landmark and its gradient.
+struct LandmarkBlock {
+  double c00 = 0, c10 = 0, c11 = 0, c20 = 0, c21 = 0, c22 = 0;
+  double g[3] = {0, 0, 0};
+
+  void add_isotropic(double weight, const Eigen::Vector3d& residual) {
+    c00 += weight;
+    c11 += weight;
+    c22 += weight;
+    for (int i = 0; i < 3; ++i) g[i] += weight * residual[i];
+  }
+};
+
+/// L^-1 of the damped block C = L L', lower triangle.
+struct InverseFactor {
+  double l00, l10, l11, l20, l21, l22;
+
+  /// False where the block is singular.
+  bool compute(const LandmarkBlock& C, double damping) {
+    constexpr double kMinPivot = 1e-13;   // relative: below, the pivot is rounding error
+    constexpr double kTraceShare = 1e-3;  // of the damping: holds a direction along an axis that nothing measures
+    const double grow = 1.0 + damping, trace = C.c00 + C.c11 + C.c22, shift = damping * kTraceShare * trace;
+    const double c00 = grow * C.c00 + shift, c11 = grow * C.c11 + shift, c22 = grow * C.c22 + shift;
+    const double floor = kMinPivot * trace;
+    if (!(c00 > floor)) return false;
+    const double a00 = std::sqrt(c00), a10 = C.c10 / a00, a20 = C.c20 / a00;
+    const double d11 = c11 - a10 * a10;
+    if (!(d11 > floor)) return false;
+    const double a11 = std::sqrt(d11), a21 = (C.c21 - a20 * a10) / a11;
+    const double d22 = c22 - a20 * a20 - a21 * a21;
+    if (!(d22 > floor)) return false;
+    l00 = 1.0 / a00;
+    l11 = 1.0 / a11;
+    l22 = 1.0 / std::sqrt(d22);
+    l10 = -a10 * l00 * l11;
+    l21 = -a21 * l11 * l22;
+    l20 = -(a20 * l00 + a21 * l10) * l22;
+    return true;
+  }
+
+  [[nodiscard]] Eigen::Vector3d times(const double g[3]) const {
+    return {l00 * g[0], l10 * g[0] + l11 * g[1], l20 * g[0] + l21 * g[1] + l22 * g[2]};
+  }
+  [[nodiscard]] Eigen::Vector3d transposed_times(const Eigen::Vector3d& y) const {
+    return {l00 * y[0] + l10 * y[1] + l20 * y[2], l11 * y[1] + l21 * y[2], l22 * y[2]};
+  }
+};
 
 /// What a term adds to its landmark's block.
 template <class Term>
@@ -93,7 +142,7 @@ LandmarkEliminator::Entry* LandmarkEliminator::entry_of(std::uint32_t row) {
   return &*entries_.insert(entries_.begin() + static_cast<std::ptrdiff_t>(i), entry);
 }
 
-void LandmarkEliminator::add_camera(ObservationTerms& terms, const SeenLandmark& seen, PoseEquations* reduced) {
+void LandmarkEliminator::add_camera(ObservationTerms& terms, const SeenLandmark& seen, BlockSystem* reduced) {
   constexpr int kNumRows = ObservationTerms::kNumRows;
   Eigen::Matrix<double, 6, kNumRows> J, weighted;
   double residual[kNumRows], weight[kNumRows], by_landmark[kNumRows][3];
@@ -112,14 +161,14 @@ void LandmarkEliminator::add_camera(ObservationTerms& terms, const SeenLandmark&
   });
   for (int k = 0; k < kNumRows; ++k) weighted.col(k) = weight[k] * J.col(k);
   const std::uint32_t row = seen.camera.row;
-  add_product<1>(weighted, J, reduced->system.block(row, row));
+  add_product<1>(weighted, J, reduced->block(row, row));
   Vector6d diagonal = weighted.col(0).cwiseProduct(J.col(0)), gradient = residual[0] * weighted.col(0);
   for (int k = 1; k < kNumRows; ++k) {
     diagonal += weighted.col(k).cwiseProduct(J.col(k));
     gradient += residual[k] * weighted.col(k);
   }
-  reduced->diagonal[row] += diagonal;
-  reduced->system.gradient(row) += gradient;
+  reduced->diagonal(row) += diagonal;
+  reduced->gradient(row) += gradient;
   Entry* const entry = entry_of(row);
   for (int axis = 0; axis < 3; ++axis) {
     Vector6d column = by_landmark[0][axis] * weighted.col(0);
@@ -128,22 +177,21 @@ void LandmarkEliminator::add_camera(ObservationTerms& terms, const SeenLandmark&
   }
 }
 
-double LandmarkEliminator::eliminate(const LandmarkObservations& landmark, const Eigen::Vector3d& X, double damping,
-                                     PoseEquations* reduced) {
+double LandmarkEliminator::eliminate(const LandmarkObservations& landmark, const Eigen::Vector3d& X, double damping, BlockSystem* reduced) {
   entries_.clear();
   LandmarkBlock C;
   double cost = 0;
-  for (const BundleObservation* o = landmark.begin; o != landmark.end; ++o) {
-    const SeenLandmark seen(*o, cameras_[o->camera], X.data());
-    ObservationTerms terms(options_, *o, seen);
+  for (const BundleObservation& o : landmark.observations) {
+    const SeenLandmark seen(o, cameras_[o.camera], X.data());
+    ObservationTerms terms(options_, o, seen);
     cost += terms.cost();
     if (!seen.is_in_view) continue;
     add_to(terms, seen, &C);
     if (seen.camera.row != kFixedPose) add_camera(terms, seen, reduced);
   }
-  for (const PointPrior* prior = landmark.priors_begin; prior != landmark.priors_end; ++prior) {
-    prior->add_to(X, &C);
-    cost += prior->cost(X);
+  for (const PointPrior& prior : landmark.priors) {
+    C.add_isotropic(prior.weight(), X - prior.position_m);
+    cost += prior.cost(X);
   }
 
   InverseFactor L;
@@ -154,10 +202,10 @@ double LandmarkEliminator::eliminate(const LandmarkObservations& landmark, const
     E.col(2) = L.l20 * E.col(0) + L.l21 * E.col(1) + L.l22 * E.col(2);
     E.col(1) = L.l10 * E.col(0) + L.l11 * E.col(1);
     E.col(0) *= L.l00;
-    reduced->system.gradient(entries_[j].row).noalias() -= E * y;
+    reduced->gradient(entries_[j].row).noalias() -= E * y;
     blocks_.resize(j + 1);
     for (std::size_t i = 0; i <= j; ++i) {
-      blocks_[i] = reduced->system.block(entries_[i].row, entries_[j].row);
+      blocks_[i] = reduced->block(entries_[i].row, entries_[j].row);
       prefetch_block(blocks_[i]);
     }
     for (std::size_t i = 0; i <= j; ++i) add_product<-1>(entries_[i].E, E, blocks_[i]);
@@ -168,9 +216,9 @@ double LandmarkEliminator::eliminate(const LandmarkObservations& landmark, const
 Eigen::Vector3d LandmarkEliminator::step(const LandmarkObservations& landmark, const Eigen::Vector3d& X, double damping,
                                          const std::vector<Vector6d>& camera_steps) const {
   LandmarkBlock C;
-  for (const BundleObservation* o = landmark.begin; o != landmark.end; ++o) {
-    const SeenLandmark seen(*o, cameras_[o->camera], X.data());
-    ObservationTerms terms(options_, *o, seen);
+  for (const BundleObservation& o : landmark.observations) {
+    const SeenLandmark seen(o, cameras_[o.camera], X.data());
+    ObservationTerms terms(options_, o, seen);
     if (!seen.is_in_view) continue;
     if (seen.camera.row != kFixedPose) {
       // The gradient after the camera's step: what its residuals have changed by goes into the residuals.
@@ -182,7 +230,7 @@ Eigen::Vector3d LandmarkEliminator::step(const LandmarkObservations& landmark, c
     }
     add_to(terms, seen, &C);
   }
-  for (const PointPrior* prior = landmark.priors_begin; prior != landmark.priors_end; ++prior) prior->add_to(X, &C);
+  for (const PointPrior& prior : landmark.priors) C.add_isotropic(prior.weight(), X - prior.position_m);
   InverseFactor L;
   if (!L.compute(C, damping)) return Eigen::Vector3d::Zero();
   return -L.transposed_times(L.times(C.g));
@@ -190,10 +238,10 @@ Eigen::Vector3d LandmarkEliminator::step(const LandmarkObservations& landmark, c
 
 double LandmarkEliminator::cost(const LandmarkObservations& landmark, const Eigen::Vector3d& X) const {
   double cost = 0;
-  for (const BundleObservation* o = landmark.begin; o != landmark.end; ++o) {
-    cost += ObservationTerms(options_, *o, SeenLandmark(*o, cameras_[o->camera], X.data())).cost();
+  for (const BundleObservation& o : landmark.observations) {
+    cost += ObservationTerms(options_, o, SeenLandmark(o, cameras_[o.camera], X.data())).cost();
   }
-  for (const PointPrior* p = landmark.priors_begin; p != landmark.priors_end; ++p) cost += p->cost(X);
+  for (const PointPrior& prior : landmark.priors) cost += prior.cost(X);
   return cost;
 }
 

@@ -5,22 +5,21 @@
 // again once the cameras have moved. Nothing is kept in between: a landmark's blocks are cheaper to compute twice than to keep.
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "core/optimize/block_system.h"
 #include "core/optimize/bundle_problem.h"
-#include "core/optimize/pose_equations.h"
 #include "core/optimize/terms/depth.h"
 #include "core/optimize/terms/observation.h"
 #include "core/optimize/terms/reprojection.h"
 
 namespace camloc {
 
-/// A landmark's view into the problem.
+/// What is known about one landmark.
 struct LandmarkObservations {
-  const BundleObservation* begin;
-  const BundleObservation* end;
-  const PointPrior* priors_begin;
-  const PointPrior* priors_end;
+  std::span<const BundleObservation> observations;
+  std::span<const PointPrior> priors;
 };
 
 /// The terms of every observation, each one a file in terms/.
@@ -33,7 +32,7 @@ class LandmarkEliminator {
 
   /// Adds the landmark at X to the reduced system; returns its cost. With damping > 0 a landmark that its observations leave
   /// free to move along a ray holds no camera.
-  double eliminate(const LandmarkObservations& landmark, const Eigen::Vector3d& X, double damping, PoseEquations* reduced);
+  double eliminate(const LandmarkObservations& landmark, const Eigen::Vector3d& X, double damping, BlockSystem* reduced);
 
   /// The landmark's own step given those of the cameras; zero where nothing sees it.
   [[nodiscard]] Eigen::Vector3d step(const LandmarkObservations& landmark, const Eigen::Vector3d& X, double damping,
@@ -47,7 +46,7 @@ class LandmarkEliminator {
     Eigen::Matrix<double, 6, 3> E;  ///< block of camera and landmark, later times L^-T
   };
 
-  void add_camera(ObservationTerms& terms, const SeenLandmark& seen, PoseEquations* reduced);
+  void add_camera(ObservationTerms& terms, const SeenLandmark& seen, BlockSystem* reduced);
   Entry* entry_of(std::uint32_t row);
 
   const BundleOptions& options_;

@@ -21,10 +21,6 @@ struct PoseGraph {
   std::vector<PoseGraphPrior> priors;
 };
 
-struct PoseGraphOptions {
-  double kernel_sigmas = 0;  ///< width of the Cauchy kernel over the Mahalanobis distance of edges and priors; 0 = none
-};
-
 struct PoseGraphReport {
   int num_iterations = 0;
   double initial_cost = 0, final_cost = 0;
@@ -34,6 +30,7 @@ struct PoseGraphReport {
 };
 
 /// Moves the poses in place. Every connected part needs a fixed pose or a prior. The same graph gives the same bits.
-PoseGraphReport optimize_pose_graph(const PoseGraphOptions& options, PoseGraph* graph);
+/// `kernel_sigmas`: width of the Cauchy kernel over the Mahalanobis distance of edges and priors; 0 = none.
+PoseGraphReport optimize_pose_graph(PoseGraph* graph, double kernel_sigmas = 0);
 
 }  // namespace camloc

@@ -9,7 +9,7 @@ namespace camloc {
 namespace {
 
 constexpr double kMaxLooseness = 20;
-constexpr double kViewRangeM = 6.0;  // how far apart two views of one place may be taken from
+constexpr double kViewRangeM = 6.0;  // how far apart two frames of one place may be taken from
 // Where tracking was lost, the camera may have moved this far until the next segment began.
 constexpr double kReachM = 0.5, kReachMS = 1.5;
 constexpr double kLinkM = 0.006, kLinkRad = 0.005;  // what a link of full strength is good for
@@ -31,13 +31,12 @@ Matrix6d link_covariance(const Rigid3& T_i_j, std::uint32_t num_shared) {
 
 void DeadReckoning::note_links(std::uint32_t keyframe) {
   const auto neighbours = map_->covisible(keyframe, 1);
-  if (looseness_.size() <= keyframe) looseness_.resize(keyframe + 1, kMaxLooseness);  // the first of a segment has no link
-  looseness_[keyframe] = looseness_of(neighbours.empty() ? 0 : neighbours.front().num_shared);
+  note_looseness(keyframe, looseness_of(neighbours.empty() ? 0 : neighbours.front().num_shared));
 }
 
-void DeadReckoning::note_bridged(std::uint32_t keyframe) {
-  if (looseness_.size() <= keyframe) looseness_.resize(keyframe + 1, kMaxLooseness);
-  looseness_[keyframe] = 1;
+void DeadReckoning::note_looseness(std::uint32_t keyframe, double looseness) {
+  if (looseness_.size() <= keyframe) looseness_.resize(keyframe + 1, kMaxLooseness);  // the first of a segment has no link
+  looseness_[keyframe] = looseness;
 }
 
 // Grows with the way between the two, and with every weak link on it.
@@ -46,10 +45,10 @@ DeadReckoning::Drift DeadReckoning::drift(std::uint32_t a, std::uint32_t b) cons
   Drift drift{numbers_.loop_drift_m, numbers_.loop_drift_rad};
   double loose = 0;
   for (std::uint32_t k = from + 1; k <= to; ++k) {
-    const Rigid3 step = map_->keyframe(k - 1).view.T_map_camera.inverse() * map_->keyframe(k).view.T_map_camera;
-    const double walked = step.translation.norm(), turned_rad = rotation_distance_rad(step.rotation, Eigen::Quaterniond::Identity());
-    drift.sigma_m += numbers_.loop_drift_per_m * walked;
-    drift.sigma_rad += numbers_.loop_drift_rad_per_m * walked + numbers_.loop_drift_rad_per_rad * turned_rad;
+    const Rigid3 step = map_->T_map_camera(k - 1).inverse() * map_->T_map_camera(k);
+    const double moved_m = step.translation.norm(), turned_rad = rotation_distance_rad(step.rotation, Eigen::Quaterniond::Identity());
+    drift.sigma_m += numbers_.loop_drift_per_m * moved_m;
+    drift.sigma_rad += numbers_.loop_drift_rad_per_m * moved_m + numbers_.loop_drift_rad_per_rad * turned_rad;
     loose += (looseness_[k] - 1) * (looseness_[k] - 1);
   }
   drift.sigma_m += kLinkM * std::sqrt(loose);
@@ -57,25 +56,23 @@ DeadReckoning::Drift DeadReckoning::drift(std::uint32_t a, std::uint32_t b) cons
   return drift;
 }
 
-// Could the camera have come within sight of that place?
 bool DeadReckoning::may_see(std::uint32_t keyframe, std::uint32_t place) const {
-  const Eigen::Vector3d here = map_->keyframe(keyframe).view.T_map_camera.translation;
-  const Eigen::Vector3d there = map_->keyframe(place).view.T_map_camera.translation;
+  const Eigen::Vector3d here = map_->T_map_camera(keyframe).translation;
+  const Eigen::Vector3d there = map_->T_map_camera(place).translation;
   if (map_->keyframe(place).segment == map_->keyframe(keyframe).segment) {
     const Drift expected = drift(place, keyframe);
     return (here - there).norm() <= kViewRangeM + 3 * expected.sigma_m;
   }
   const SegmentBegin* begin = begin_between(place, keyframe);
   if (begin == nullptr) return true;
-  const Rigid3 T_map_lost = map_->keyframe(begin->keyframe_before).view.T_map_camera * begin->T_before_camera;
-  const Rigid3 T_map_found = map_->keyframe(begin->first_keyframe).view.T_map_camera;
+  const Rigid3 T_map_lost = map_->T_map_camera(begin->keyframe_before) * begin->T_before_camera;
+  const Rigid3 T_map_found = map_->T_map_camera(begin->first_keyframe);
   const bool is_place_before = map_->keyframe(place).segment == map_->keyframe(begin->keyframe_before).segment;
   const double apart = is_place_before ? (there - T_map_lost.translation).norm() - (here - T_map_found.translation).norm()
                                        : (there - T_map_found.translation).norm() - (here - T_map_lost.translation).norm();
   return apart <= kViewRangeM + kReachM + kReachMS * begin->gap_s;
 }
 
-// How the later one of two neighbouring segments began.
 const SegmentBegin* DeadReckoning::begin_between(std::uint32_t a, std::uint32_t b) const {
   const std::uint32_t segment_a = map_->keyframe(a).segment, segment_b = map_->keyframe(b).segment;
   for (const SegmentBegin& begin : begins_) {
@@ -87,7 +84,7 @@ const SegmentBegin* DeadReckoning::begin_between(std::uint32_t a, std::uint32_t 
 }
 
 double DeadReckoning::drift_inconsistency(std::uint32_t keyframe, std::uint32_t place, const Rigid3& T_map_keyframe) const {
-  const Rigid3 T_map_now = map_->keyframe(keyframe).view.T_map_camera;
+  const Rigid3 T_map_now = map_->T_map_camera(keyframe);
   if (map_->keyframe(place).segment == map_->keyframe(keyframe).segment) {
     const Drift expected = drift(place, keyframe);
     return std::max((T_map_keyframe.translation - T_map_now.translation).norm() / expected.sigma_m,
@@ -96,8 +93,8 @@ double DeadReckoning::drift_inconsistency(std::uint32_t keyframe, std::uint32_t 
   const SegmentBegin* begin = begin_between(place, keyframe);
   if (begin == nullptr) return 0;
   const Rigid3 T_correction = T_map_keyframe * T_map_now.inverse();  // from the segment of the keyframe to that of the place
-  Eigen::Vector3d lost = map_->keyframe(begin->keyframe_before).view.T_map_camera * begin->T_before_camera.translation;
-  Eigen::Vector3d found = map_->keyframe(begin->first_keyframe).view.T_map_camera.translation;
+  Eigen::Vector3d lost = map_->T_map_camera(begin->keyframe_before) * begin->T_before_camera.translation;
+  Eigen::Vector3d found = map_->T_map_camera(begin->first_keyframe).translation;
   if (map_->keyframe(begin->keyframe_before).segment == map_->keyframe(keyframe).segment)
     lost = T_correction * lost;
   else

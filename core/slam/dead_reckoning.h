@@ -35,7 +35,7 @@ class DeadReckoning {
   /// A keyframe is in the map with all it shares with those before; ascending.
   void note_links(std::uint32_t keyframe);
   /// A keyframe is held by a link of another kind, whose error is noted with one that follows.
-  void note_bridged(std::uint32_t keyframe);
+  void note_bridged(std::uint32_t keyframe) { note_looseness(keyframe, 1); }
 
   /// A correction of the keyframe's pose by what it sees of a place, in units of what dead reckoning may be off. Between two
   /// segments it is 0 where the camera can have come that far while it was lost, and where nothing is known. Above
@@ -51,6 +51,7 @@ class DeadReckoning {
   struct Drift {
     double sigma_m, sigma_rad;
   };
+  void note_looseness(std::uint32_t keyframe, double looseness);
   [[nodiscard]] Drift drift(std::uint32_t a, std::uint32_t b) const;
 
   SlamNumbers numbers_;

@@ -21,7 +21,7 @@ int DenseLinks::add_keyframe(const SlamMap& map, std::uint32_t keyframe, const T
     if (step > recent_.size()) continue;
     const Recent& before = recent_[step - 1];
     if (map.keyframe(before.keyframe).segment != now.segment) continue;
-    const Rigid3 T_before_now = map.keyframe(before.keyframe).view.T_map_camera.inverse() * now.view.T_map_camera;
+    const Rigid3 T_before_now = map.T_map_camera(before.keyframe).inverse() * now.view.T_map_camera;
     const Matrix6d prior = diagonal_covariance(kPriorSigmaM, kPriorSigmaRad);
     const DenseAlignment aligned = aligner_.align(before.thumbnail, thumbnail, T_before_now, prior);
     if (!aligned.is_aligned) continue;

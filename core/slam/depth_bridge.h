@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Across a stretch without features: from the last view that was tracked, the camera is followed by dense alignment of thumbnails
-// until there is something to track again. What the views do not say (where along a bare wall) is left to constant velocity, and
+// Across a stretch without features: from the last frame that was tracked, the camera is followed by dense alignment of thumbnails
+// until there is something to track again. What the frames do not say (where along a bare wall) is left to constant velocity, and
 // the covariance knows; a bridge ends where that grows too large.
 #pragma once
 
@@ -21,7 +21,7 @@ class DepthBridge {
  public:
   DepthBridge(const RgbdCamera& camera, const SlamNumbers& numbers) : numbers_(numbers), aligner_(camera) {}
 
-  /// A view was tracked by its features: the next bridge begins here. Without a thumbnail there is none.
+  /// A frame was tracked by its features: the next bridge begins here. Without a thumbnail there is none.
   void begin_at(std::int64_t stamp_ns, const Thumbnail& thumbnail);
   /// Tracking goes on somewhere else.
   void forget();
@@ -30,11 +30,11 @@ class DepthBridge {
     Rigid3 T_begin_camera;
     Matrix6d covariance = Matrix6d::Identity();  ///< of pose_error() of T_begin_camera, axes of the begin
   };
-  /// The view that followed, given where it is expected; nothing where it does not fit or too little is known by now, and then
+  /// The frame that followed, given where it is expected; nothing where it does not fit or too little is known by now, and then
   /// the bridge has ended.
   [[nodiscard]] std::optional<Step> step(std::int64_t stamp_ns, const Thumbnail& thumbnail, const Rigid3& T_begin_camera_expected);
 
-  /// Views have been bridged since begin_at().
+  /// Frames have been bridged since begin_at().
   [[nodiscard]] bool is_open() const { return num_steps_ > 0; }
 
  private:
@@ -43,7 +43,7 @@ class DepthBridge {
   std::int64_t begin_ns_ = 0, last_ns_ = 0;
   int num_steps_ = 0;
   Thumbnail anchor_;
-  Step anchor_step_, last_;  ///< where the anchor and the last view are
+  Step anchor_step_, last_;  ///< where the anchor and the last frame are
 };
 
 }  // namespace camloc

@@ -29,16 +29,12 @@ MapFit measure_fit(const BundleOptions& bundle, const MapExtract& extract, std::
 }
 
 // Takes observations that do not fit out of the map; the observations of the extract are left as they are.
-std::uint64_t remove_outliers(const MapExtract& extract, std::span<const BundleResidual> residuals, double max_pixel_sigmas, SlamMap* map) {
-  std::uint64_t num_removed = 0;
+void remove_outliers(const MapExtract& extract, std::span<const BundleResidual> residuals, double max_pixel_sigmas, SlamMap* map) {
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     if (residuals[i].pixel_sigmas <= max_pixel_sigmas) continue;
     const BundleObservation& o = extract.problem.observations[i];
-    if (o.landmark >= extract.landmarks.size()) continue;
-    map->remove_observation(extract.landmarks[o.landmark], extract.keyframes[o.camera]);
-    ++num_removed;
+    if (o.landmark < extract.landmarks.size()) map->remove_observation(extract.landmarks[o.landmark], extract.keyframes[o.camera]);
   }
-  return num_removed;
 }
 
 }  // namespace
@@ -51,15 +47,14 @@ MapFit adjust_locally(const BundleOptions& bundle, const SlamNumbers& numbers, s
   adjust_bundle(local, &extract.problem);
   write_back(extract, map);
   const std::vector<BundleResidual> residuals = bundle_residuals(local, extract.problem);
-  MapFit fit = measure_fit(local, extract, residuals);
-  fit.num_removed = remove_outliers(extract, residuals, numbers.window_max_pixel_sigmas, map);
+  const MapFit fit = measure_fit(local, extract, residuals);
+  remove_outliers(extract, residuals, numbers.window_max_pixel_sigmas, map);
   for (const std::uint32_t index : extract.landmarks) map->summarize(index);
   return fit;
 }
 
 MapFit adjust_globally(const BundleOptions& bundle, std::uint32_t segment, const MapEvidence& evidence, double max_pixel_sigmas,
                        SlamMap* map, const BundleCallback& on_iteration) {
-  std::uint64_t num_removed = 0;
   MapFit fit;
   for (int round = 0; round < 2; ++round) {
     MapExtract extract = extract_segment(segment, evidence, *map);
@@ -68,9 +63,8 @@ MapFit adjust_globally(const BundleOptions& bundle, std::uint32_t segment, const
     const std::vector<BundleResidual> residuals = bundle_residuals(bundle, extract.problem);
     fit = measure_fit(bundle, extract, residuals);
     if (report.is_stopped) break;
-    num_removed += remove_outliers(extract, residuals, max_pixel_sigmas, map);
+    remove_outliers(extract, residuals, max_pixel_sigmas, map);
   }
-  fit.num_removed = num_removed;
   for (std::uint32_t i = 0; i < map->landmarks().size(); ++i) map->summarize(i);
   return fit;
 }

@@ -12,7 +12,7 @@ namespace camloc {
 
 /// How well keyframes and landmarks agree after an adjustment.
 struct MapFit {
-  std::uint64_t num_observations = 0, num_removed = 0;
+  std::uint64_t num_observations = 0;
   double median_px = 0, p90_px = 0;  ///< reprojection error, pixels of level 0
   double median_depth_sigmas = 0;    ///< |depth residual|, of the noise that the adjustment was given
   double median_depth_m = 0;

@@ -15,7 +15,7 @@ constexpr std::uint32_t kMinShared = 15;  // landmarks that make a keyframe a ne
 void add_camera(const SlamMap& map, std::uint32_t keyframe, bool is_fixed, MapExtract* extract) {
   extract->camera_of_keyframe[keyframe] = static_cast<std::uint32_t>(extract->keyframes.size());
   extract->keyframes.push_back(keyframe);
-  extract->problem.T_map_camera.push_back(map.keyframe(keyframe).view.T_map_camera);
+  extract->problem.T_map_camera.push_back(map.T_map_camera(keyframe));
   extract->problem.is_camera_fixed.push_back(is_fixed ? 1 : 0);
 }
 

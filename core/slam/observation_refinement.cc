@@ -8,12 +8,14 @@
 #include <limits>
 #include <optional>
 
+#include "core/dense/patch_alignment.h"
+
 namespace camloc {
 namespace {
 
 constexpr double kMaxMagnification = 2.0;  // of area and its inverse, between two patches
 
-/// A observation and what belongs to it.
+/// An observation and what belongs to it.
 struct Seen {
   const SlamKeyframe& keyframe;
   std::uint32_t feature;
@@ -63,16 +65,20 @@ std::optional<Eigen::Matrix2d> warp(const Seen& reference, const Seen& target) {
   return A_target_reference.inverse();
 }
 
-PatchAlignment align(const Seen& reference, const Seen& target) {
+/// Where the target shows the reference's point, in pixels of level 0 from its own; nothing where it cannot be aligned.
+std::optional<Eigen::Vector2f> shift_px_of(const Seen& reference, const Seen& target) {
   const std::optional<Eigen::Matrix2d> A_reference_target = warp(reference, target);
-  if (!A_reference_target) return {PatchVerdict::kOutside, {}, 0, 0};
-  return align_patch(reference.keyframe.view.patches[reference.feature], *A_reference_target, target.keyframe.view.patches[target.feature]);
+  if (!A_reference_target) return std::nullopt;
+  const PatchAlignment aligned =
+      align_patch(reference.keyframe.view.patches[reference.feature], *A_reference_target, target.keyframe.view.patches[target.feature]);
+  if (aligned.verdict != PatchVerdict::kAligned) return std::nullopt;
+  return (target.scale * aligned.shift_px).cast<float>();
 }
 
 }  // namespace
 
-ObservationRefinementReport refine_observations(SlamMap* map) {
-  ObservationRefinementReport report;
+std::uint64_t refine_observations(SlamMap* map) {
+  std::uint64_t num_aligned = 0;
   const UndistortionTable rays(map->camera().color);
   for (std::uint32_t index = 0; index < map->landmarks().size(); ++index) {
     const SlamLandmark& landmark = map->landmark(index);
@@ -80,23 +86,21 @@ ObservationRefinementReport refine_observations(SlamMap* map) {
     const std::size_t chosen = choose_reference(*map, landmark);
     const Seen reference = seen_by(*map, landmark.observations[chosen], landmark.position_m);
     if (reference.keyframe.view.patches.empty()) continue;
-    ++report.num_references;
     for (std::size_t i = 0; i < landmark.observations.size(); ++i) {
       const Observation& observation = landmark.observations[i];
       const Seen target = seen_by(*map, observation, landmark.position_m);
       if (target.keyframe.view.patches.empty()) continue;
       const Keypoint& found = target.keyframe.view.features.keypoints[observation.feature];
       Eigen::Vector2f shift_px = Eigen::Vector2f::Zero();
-      if (i != chosen) {
-        const PatchAlignment aligned = align(reference, target);
-        ++report.num_by_verdict[static_cast<std::size_t>(aligned.verdict)];
-        if (aligned.verdict == PatchVerdict::kAligned) shift_px = (target.scale * aligned.shift_px).cast<float>();
+      if (const auto shift = i == chosen ? std::nullopt : shift_px_of(reference, target)) {
+        shift_px = *shift;
+        ++num_aligned;
       }
       map->keyframe(observation.keyframe).view.normalized[observation.feature] =
           rays.undistort(found.u + shift_px.x(), found.v + shift_px.y());
     }
   }
-  return report;
+  return num_aligned;
 }
 
 }  // namespace camloc

@@ -1,5 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+//
+// Read place_view() first. A frame is tracked against the landmarks around the last keyframe; where that fails, it is looked for by
+// its words, then followed by dense alignment (depth_bridge), and after some lost frames a new segment begins. A frame that shows
+// enough that is new becomes a keyframe: it gets landmarks, its window is adjusted, and a loop is looked for. finish() adjusts all.
 #include "core/slam/slam.h"
 
 #include <algorithm>
@@ -11,10 +15,10 @@
 namespace camloc {
 namespace {
 
-// Common landmarks of two views one after the other.
+// Common landmarks of two frames one after the other.
 constexpr std::uint32_t kStrongLink = 150;
 
-// Bridged views become keyframes when they show something new: so far from the last one.
+// Bridged frames become keyframes when they show something new: so far from the last one.
 constexpr double kBridgedKeyframeM = 0.15, kBridgedKeyframeRad = 0.1;
 constexpr std::uint32_t kBridgedNeighbours = 3;  // keyframes before it that its few features are compared with
 constexpr float kBridgedRadiusPx = 8;
@@ -70,7 +74,6 @@ FrameReport Slam::place_view(std::uint64_t frame, const FrameFeatures& view, con
   }
   num_lost_in_a_row_ = 0;
   report.state = ViewState::kTracked;
-  report.is_found_back = was_lost;
   report.num_inliers = found.num_inliers;
   tracker_.accept(view.stamp_ns, found.T_map_camera);
   const bool is_required = std::binary_search(options_.required_keyframes.begin(), options_.required_keyframes.end(), frame);
@@ -83,17 +86,17 @@ FrameReport Slam::place_view(std::uint64_t frame, const FrameFeatures& view, con
   return report;
 }
 
-// The next view may need this one.
+// The next frame may need this one.
 void Slam::begin_bridge(std::int64_t stamp_ns, const Thumbnail& thumbnail) {
   bridge_.begin_at(stamp_ns, thumbnail);
   bridge_begin_ = {tracker_.reference(), tracker_.T_reference_camera()};
 }
 
-// A view full of features that fit nothing is a riddle, no bare wall: only a bridge may lead to one.
+// A frame full of features that fit nothing is a riddle, no bare wall: only a bridge may lead to one.
 bool Slam::go_on_by_depth(std::uint64_t frame, const FrameFeatures& view, const Thumbnail& thumbnail, FrameReport* report) {
   const bool is_bare = num_with_depth(view) < options_.numbers.min_segment_features;
   if (!is_bare && !bridge_.is_open()) return false;
-  const Rigid3 T_map_begin = map_.keyframe(bridge_begin_.reference).view.T_map_camera * bridge_begin_.T_reference_camera;
+  const Rigid3 T_map_begin = map_.T_map_camera(bridge_begin_.reference) * bridge_begin_.T_reference_camera;
   const auto step = bridge_.step(view.stamp_ns, thumbnail, T_map_begin.inverse() * tracker_.predict(view.stamp_ns));
   if (!step) return false;
   report->state = ViewState::kTracked;
@@ -109,9 +112,13 @@ bool Slam::go_on_by_depth(std::uint64_t frame, const FrameFeatures& view, const 
   }
   const std::uint32_t keyframe = add_bridged_keyframe(frame, view, thumbnail, *step);
   report->is_keyframe = true;
-  if (!is_bare) end_bridge(keyframe, report);
+  if (!is_bare) {  // features again, but of nothing that is known: the map goes on from here
+    tracker_.set_reference(keyframe);
+    report->loop = look_for_loop(keyframe);
+    tracker_.refresh();
+    begin_bridge(view.stamp_ns, thumbnail);
+  }
   places_.add(view.features.descriptors);
-  if (!is_bare) begin_bridge(view.stamp_ns, thumbnail);
   return true;
 }
 
@@ -120,7 +127,7 @@ std::uint32_t Slam::add_bridged_keyframe(std::uint64_t frame, FrameFeatures view
                                          const DepthBridge::Step& step) {
   const std::uint32_t before = bridge_begin_.reference, last = static_cast<std::uint32_t>(map_.keyframes().size()) - 1;
   const Rigid3 T_before_camera = bridge_begin_.T_reference_camera * step.T_begin_camera;
-  view.T_map_camera = map_.keyframe(before).view.T_map_camera * T_before_camera;
+  view.T_map_camera = map_.T_map_camera(before) * T_before_camera;
   const std::uint32_t segment = map_.keyframe(before).segment;
   const std::uint32_t keyframe = insert_keyframe(frame, segment, view, {}, &map_);
   std::vector<std::uint32_t> nearby;
@@ -135,16 +142,6 @@ std::uint32_t Slam::add_bridged_keyframe(std::uint64_t frame, FrameFeatures view
   if (links_.add_keyframe(map_, keyframe, thumbnail) == 0) links_.add({before, keyframe, T_before_camera, covariance});
   tracked_.push_back({frame, view.stamp_ns, keyframe, {}, true, {}});
   return keyframe;
-}
-
-// There are features again, but of nothing that is known: the map goes on from here.
-void Slam::end_bridge(std::uint32_t keyframe, FrameReport* report) {
-  tracker_.set_reference(keyframe);
-  if (options_.numbers.close_loops != 0) {
-    report->loop = loops_.consider(keyframe, places_);
-    count(report->loop);
-  }
-  tracker_.refresh();
 }
 
 bool Slam::begin_segment(std::uint64_t frame, FrameFeatures view, FrameReport* report) {
@@ -181,16 +178,13 @@ void Slam::add_keyframe(std::uint64_t frame, FrameFeatures view, const Registrat
   tracker_.set_reference(keyframe);
   remember(frame, view.stamp_ns, true);
   adjust_around(keyframe);
-  if (options_.numbers.close_loops != 0) {
-    report->loop = loops_.consider(keyframe, places_);
-    count(report->loop);
-    if (report->loop.is_closed) adjust_around(keyframe);
-  }
+  report->loop = look_for_loop(keyframe);
+  if (report->loop.is_closed) adjust_around(keyframe);
   places_.add(view.features.descriptors);
   tracker_.refresh();
 }
 
-// A view that was tracked, and what it saw.
+// A frame that was tracked, and what it saw.
 void Slam::remember(std::uint64_t frame, std::int64_t stamp_ns, bool is_keyframe, std::vector<TrackedFrame::Seen> seen) {
   tracked_.push_back({frame, stamp_ns, tracker_.reference(), tracker_.T_reference_camera(), is_keyframe, std::move(seen)});
 }
@@ -227,9 +221,9 @@ BundleOptions Slam::bundle_options() const {
   return bundle;
 }
 
-// Keyframes are final; the views between them are refined on the final landmarks.
+// Keyframes are final; the frames between them are refined on the final landmarks.
 Rigid3 Slam::final_pose(const TrackedFrame& view) const {
-  const Rigid3 T_map_camera = map_.keyframe(view.reference).view.T_map_camera * view.T_reference_camera;
+  const Rigid3 T_map_camera = map_.T_map_camera(view.reference) * view.T_reference_camera;
   if (view.is_keyframe) return T_map_camera;
   Correspondences pairs(view.seen.size());
   for (const TrackedFrame::Seen& seen : view.seen) {
@@ -256,17 +250,20 @@ void Slam::join_leftover_segments() {
     if (map_.keyframe(k).segment != main_segment) leftover.push_back(k);
   }
   for (const std::uint32_t k : leftover) {
-    if (map_.keyframe(k).segment != main_segment) count(loops_.consider(k, places_));
+    if (map_.keyframe(k).segment != main_segment) look_for_loop(k);
   }
   for (const std::uint32_t k : leftover) {
-    if (map_.keyframe(k).segment == main_segment) count(loops_.consider(k, places_));
+    if (map_.keyframe(k).segment == main_segment) look_for_loop(k);
   }
 }
 
-void Slam::count(const LoopReport& loop) {
+LoopReport Slam::look_for_loop(std::uint32_t keyframe) {
+  if (options_.numbers.close_loops == 0) return {};
+  const LoopReport loop = loops_.consider(keyframe, places_);
   if (loop.is_closed) ++counts_.num_loops;
   if (loop.is_joined) ++counts_.num_joined;
   if (loop.is_refused) ++counts_.num_loops_refused;
+  return loop;
 }
 
 // Pixels are not needed any more afterwards.
@@ -322,14 +319,10 @@ SlamResult Slam::result() const {
   std::map<std::uint32_t, SlamResult::Segment> segments;
   for (const SlamKeyframe& keyframe : map_.keyframes()) ++segments[keyframe.segment].num_keyframes;
   for (const TrackedFrame& view : tracked_) {
-    SlamPose& pose = result.poses.emplace_back();
-    pose.frame = view.frame;
-    pose.stamp_ns = view.stamp_ns;
-    pose.segment = map_.keyframe(view.reference).segment;
-    pose.T_map_camera = final_pose(view);
-    pose.num_inliers = static_cast<std::uint32_t>(view.seen.size());
-    pose.is_keyframe = view.is_keyframe;
-    ++segments[pose.segment].num_views;
+    const std::uint32_t segment = map_.keyframe(view.reference).segment;
+    const auto num_inliers = static_cast<std::uint32_t>(view.seen.size());
+    result.poses.push_back({view.frame, view.stamp_ns, segment, final_pose(view), num_inliers, view.is_keyframe});
+    ++segments[segment].num_views;
   }
   for (auto& [id, segment] : segments) {
     segment.id = id;

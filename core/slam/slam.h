@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// RGB-D SLAM: where the camera was in every view of a walk, from the views alone. Keyframes, a local bundle adjustment with
+// RGB-D SLAM: where the camera was in every frame of a recording, from the frames alone. Keyframes, a local bundle adjustment with
 // depth for each of them, loops closed on the way, everything adjusted at the end. Follows the outline of ORB-SLAM2 (Mur-Artal
 // and Tardos, "ORB-SLAM2: an open-source SLAM system for monocular, stereo and RGB-D cameras", 2017), with depth as an
-// observation of its own. One thread, no clock: the same views and options give the same bits.
+// observation of its own. One thread, no clock: the same frames and options give the same bits.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,6 @@
 #include "core/slam/dense_links.h"
 #include "core/slam/depth_bridge.h"
 #include "core/slam/depth_weight.h"
-#include "core/slam/far_landmarks.h"
 #include "core/slam/loops/loop_closing.h"
 #include "core/slam/loops/place_index.h"
 #include "core/slam/map_adjustment.h"
@@ -31,32 +30,31 @@
 namespace camloc {
 
 struct SlamOptions {
-  OrbOptions orb;  ///< what the features of the views were made with
+  OrbOptions orb;  ///< what the features of the frames were made with
   SlamNumbers numbers;
   std::vector<std::uint64_t> required_keyframes;  ///< frames that become keyframes whatever they show, ascending
 };
 
 enum class ViewState : std::uint8_t { kTracked, kLost };
 
-/// What became of one view.
+/// What became of one frame.
 struct FrameReport {
   ViewState state = ViewState::kLost;
   std::uint32_t num_inliers = 0;
   bool is_keyframe = false;
-  bool is_bridged = false;     ///< tracked, but by dense alignment: it shows too few features
-  bool is_found_back = false;  ///< the first one after a loss
+  bool is_bridged = false;  ///< tracked, but by dense alignment: it shows too few features
   bool has_begun_segment = false;
   LoopReport loop;
 };
 
 struct SlamCounts {
-  std::uint32_t num_views = 0, num_lost = 0, num_losses = 0;  ///< views without pose; how often it happened
-  std::uint32_t num_bridged = 0;                              ///< views whose pose is from dense alignment
+  std::uint32_t num_views = 0, num_lost = 0, num_losses = 0;  ///< frames without pose; how often it happened
+  std::uint32_t num_bridged = 0;                              ///< frames whose pose is from dense alignment
   std::uint32_t num_keyframes = 0, num_landmarks = 0;
   std::uint32_t num_loops = 0, num_loops_refused = 0, num_segments = 0, num_joined = 0;
 };
 
-/// A view and where it was.
+/// A frame and where it was.
 struct SlamPose {
   std::uint64_t frame = 0;
   std::int64_t stamp_ns = 0;
@@ -67,14 +65,14 @@ struct SlamPose {
 };
 
 struct SlamResult {
-  std::vector<SlamPose> poses;  ///< of all tracked views, in their order
+  std::vector<SlamPose> poses;  ///< of all tracked frames, in their order
   struct Segment {
     std::uint32_t id = 0;
     std::uint32_t num_keyframes = 0, num_views = 0;
     MapFit fit;
     MapUncertainty uncertainty;  ///< only where Slam::uncertainty() was asked
   };
-  std::vector<Segment> segments;  ///< most views first
+  std::vector<Segment> segments;  ///< most frames first
 };
 
 /// Not thread-safe.
@@ -82,7 +80,7 @@ class Slam {
  public:
   Slam(const RgbdCamera& camera, const SlamOptions& options);
 
-  /// The next view; `frame` is its index in the recording, ascending. Patches are kept of those that become keyframes, until
+  /// The next frame; `frame` is its index in the recording, ascending. Patches are kept of those that become keyframes, until
   /// finish(). With thumbnails, stretches without features are bridged, and keyframes linked by all their pixels.
   FrameReport add_view(std::uint64_t frame, const FrameFeatures& view, const Thumbnail& thumbnail = {});
   [[nodiscard]] SlamCounts counts() const;
@@ -91,7 +89,7 @@ class Slam {
   /// The keyframe that a frame has become, if it has.
   [[nodiscard]] std::optional<std::uint32_t> keyframe_of_frame(std::uint64_t frame) const;
 
-  /// Adjusts everything; call it when all views are there. `on_iteration` may stop the adjustment early.
+  /// Adjusts everything; call it when all frames are there. `on_iteration` may stop the adjustment early.
   [[nodiscard]] SlamResult finish(const BundleCallback& on_iteration = {});
   /// Adjusts the segment of the first control landmark's keyframe once more, held by surveyed points; after finish().
   [[nodiscard]] SlamResult adjust_to(std::span<const ControlLandmark> controls, const BundleCallback& on_iteration = {});
@@ -99,7 +97,7 @@ class Slam {
   [[nodiscard]] MapUncertainty uncertainty(std::uint32_t segment) const;
 
  private:
-  /// A tracked view, relative to a keyframe, with what it saw: enough to refine it once the landmarks are final.
+  /// A tracked frame, relative to a keyframe, with what it saw: enough to refine it once the landmarks are final.
   struct TrackedFrame {
     std::uint64_t frame = 0;
     std::int64_t stamp_ns = 0;
@@ -117,13 +115,12 @@ class Slam {
   void begin_bridge(std::int64_t stamp_ns, const Thumbnail& thumbnail);
   bool go_on_by_depth(std::uint64_t frame, const FrameFeatures& view, const Thumbnail& thumbnail, FrameReport* report);
   std::uint32_t add_bridged_keyframe(std::uint64_t frame, FrameFeatures view, const Thumbnail& thumbnail, const DepthBridge::Step& step);
-  void end_bridge(std::uint32_t keyframe, FrameReport* report);
   bool begin_segment(std::uint64_t frame, FrameFeatures view, FrameReport* report);
   void add_keyframe(std::uint64_t frame, FrameFeatures view, const Registration& tracked, FrameReport* report);
   void adjust_around(std::uint32_t keyframe);
   void join_leftover_segments();
   void refine_all_observations();
-  void count(const LoopReport& loop);
+  LoopReport look_for_loop(std::uint32_t keyframe);
   void remember(std::uint64_t frame, std::int64_t stamp_ns, bool is_keyframe, std::vector<TrackedFrame::Seen> seen = {});
   [[nodiscard]] std::vector<TrackedFrame::Seen> seen_in(const FrameFeatures& view, const std::vector<LandmarkObservation>& pairs) const;
   [[nodiscard]] BundleOptions bundle_options() const;
@@ -143,7 +140,7 @@ class Slam {
   struct {
     std::uint32_t reference = 0;
     Rigid3 T_reference_camera;
-  } bridge_begin_;  ///< the last view that was tracked by its features
+  } bridge_begin_;  ///< the last frame that was tracked by its features
   DepthWeight depth_weight_;
   std::vector<TrackedFrame> tracked_;
   std::map<std::uint32_t, MapFit> fits_;   ///< of the segments, after finish()

@@ -87,6 +87,7 @@ class SlamMap {
   [[nodiscard]] std::span<const SlamLandmark> landmarks() const { return landmarks_; }
   [[nodiscard]] SlamKeyframe& keyframe(std::uint32_t i) { return keyframes_[i]; }
   [[nodiscard]] const SlamKeyframe& keyframe(std::uint32_t i) const { return keyframes_[i]; }
+  [[nodiscard]] const Rigid3& T_map_camera(std::uint32_t keyframe) const { return keyframes_[keyframe].view.T_map_camera; }
   [[nodiscard]] SlamLandmark& landmark(std::uint32_t i) { return landmarks_[i]; }
   [[nodiscard]] const SlamLandmark& landmark(std::uint32_t i) const { return landmarks_[i]; }
   [[nodiscard]] std::uint32_t num_alive_landmarks() const { return num_alive_; }

@@ -33,14 +33,14 @@ Tracker::Tracker(const SlamNumbers& numbers, SlamMap* map, PoseSolver* solver)
     : numbers_(numbers), map_(map), solver_(solver), local_(map->empty_landmark_set()), place_(map->empty_landmark_set()) {}
 
 void Tracker::set_reference(std::uint32_t keyframe) {
-  const Rigid3 T_map_camera = map_->keyframe(reference_).view.T_map_camera * T_reference_camera_;
-  T_reference_camera_ = map_->keyframe(keyframe).view.T_map_camera.inverse() * T_map_camera;
+  const Rigid3 T_map_camera = map_->T_map_camera(reference_) * T_reference_camera_;
+  T_reference_camera_ = map_->T_map_camera(keyframe).inverse() * T_map_camera;
   reference_ = keyframe;
   is_local_set_stale_ = true;
 }
 
 void Tracker::accept(std::int64_t stamp_ns, const Rigid3& T_map_camera) {
-  const Rigid3 T_map_reference = map_->keyframe(reference_).view.T_map_camera;
+  const Rigid3 T_map_reference = map_->T_map_camera(reference_);
   const Rigid3 T_reference_new = T_map_reference.inverse() * T_map_camera;
   const double dt_s = seconds(stamp_ns - last_stamp_ns_);
   velocity_.reset();
@@ -50,7 +50,7 @@ void Tracker::accept(std::int64_t stamp_ns, const Rigid3& T_map_camera) {
 }
 
 Rigid3 Tracker::predict(std::int64_t stamp_ns) const {
-  const Rigid3 T_map_last = map_->keyframe(reference_).view.T_map_camera * T_reference_camera_;
+  const Rigid3 T_map_last = map_->T_map_camera(reference_) * T_reference_camera_;
   const double dt_s = seconds(stamp_ns - last_stamp_ns_);
   if (!velocity_ || dt_s <= 0 || dt_s > kMaxGapS) return T_map_last;
   return T_map_last * scaled(velocity_->T_last_next, std::min(dt_s / velocity_->dt_s, 4.0));
@@ -64,12 +64,12 @@ void Tracker::update_local_set() {
 
 bool Tracker::is_plausible(const Registration& found, std::int64_t stamp_ns) const {
   if (!found.is_found || found.num_inliers < numbers_.track_min_inliers || found.inlier_ratio() < kMinInlierRatio) return false;
-  const Rigid3 T_map_last = map_->keyframe(reference_).view.T_map_camera * T_reference_camera_;
+  const Rigid3 T_map_last = map_->T_map_camera(reference_) * T_reference_camera_;
   const double dt_s = std::max(seconds(stamp_ns - last_stamp_ns_), 0.0);
   return (found.T_map_camera.translation - T_map_last.translation).norm() <= 0.2 + numbers_.track_max_speed_m_s * dt_s;
 }
 
-// A wider search is made where the one before has lost much of what the last view saw: a pattern that repeats (the fins of a
+// A wider search is made where the one before has lost much of what the last frame saw: a pattern that repeats (the fins of a
 // radiator) may agree with itself one period off, but then the rest of the image does not.
 Registration Tracker::track(const FrameFeatures& view, std::uint64_t seed) {
   update_local_set();
@@ -89,7 +89,7 @@ Registration Tracker::track(const FrameFeatures& view, std::uint64_t seed) {
   return best;
 }
 
-// The keyframe that sees most of what the view sees.
+// The keyframe that sees most of what the frame sees.
 std::uint32_t Tracker::best_reference(const Registration& tracked) const {
   std::vector<std::uint32_t> counts(map_->keyframes().size(), 0);
   for (const LandmarkObservation& pair : tracked.inliers) {

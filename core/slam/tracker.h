@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // From frame to frame: predicts with constant velocity, looks for the landmarks of the neighbouring keyframes, and says when
-// a view shows enough that is new to become a keyframe. Poses are kept relative to a keyframe, so that they follow when a
+// a frame shows enough that is new to become a keyframe. Poses are kept relative to a keyframe, so that they follow when a
 // closed loop moves it.
 #pragma once
 
@@ -24,15 +24,15 @@ class Tracker {
  public:
   Tracker(const SlamNumbers& numbers, SlamMap* map, PoseSolver* solver);
 
-  /// Pose of the view near the last one, or not found. Adapts the reference keyframe.
+  /// Pose of the frame near the last one, or not found. Adapts the reference keyframe.
   [[nodiscard]] Registration track(const FrameFeatures& view, std::uint64_t seed);
-  /// Pose of the view anywhere in the segment that was tracked last, by what places look like.
+  /// Pose of the frame anywhere in the segment that was tracked last, by what places look like.
   [[nodiscard]] Registration relocalize(const FrameFeatures& view, const PlaceIndex& places, std::uint64_t seed);
   [[nodiscard]] bool wants_keyframe(const FrameFeatures& view, const Registration& tracked) const;
 
-  /// The view was accepted with this pose; velocity follows.
+  /// The frame was accepted with this pose; velocity follows.
   void accept(std::int64_t stamp_ns, const Rigid3& T_map_camera);
-  /// Tracking goes on from this keyframe; it was just made of the last view.
+  /// Tracking goes on from this keyframe; it was just made of the last frame.
   void set_reference(std::uint32_t keyframe);
   /// Keyframes or landmarks were changed by someone else.
   void refresh() { is_local_set_stale_ = true; }

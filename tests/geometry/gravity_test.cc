@@ -61,7 +61,6 @@ TEST(GravityFromAccelerometer, FindsUpThroughNoiseAndPushes) {
   EXPECT_GT(estimate->sigma_rad, angle(estimate->up_map, carried.up_map));
   EXPECT_LT(estimate->sigma_rad, 1.5 * kDegree);
   EXPECT_GT(estimate->inlier_share, 0.7);
-  EXPECT_LT(estimate->scatter, 4 * kDegree);
 }
 
 TEST(GravityFromAccelerometer, RefusesFewReadingsPushesAndWrongAxes) {
@@ -148,10 +147,8 @@ TEST(GravityFromFloor, FindsTheFloorUnderTablesAndClutter) {
   EXPECT_LT(angle(estimate->up_map, truth), 0.15 * kDegree);
   EXPECT_LT(angle(estimate->up_map, truth), 3 * estimate->sigma_rad);
   EXPECT_NEAR(estimate->camera_height_m, 1.6, 0.05);
-  EXPECT_NEAR(estimate->floor_offset_m, truth.dot(kTurn.translation), 0.02);
   EXPECT_EQ(estimate->source, GravitySource::kFloor);
   EXPECT_GT(estimate->inlier_share, 0.25);
-  EXPECT_LT(estimate->scatter, 0.015);
 }
 
 // The table holds more points than what is seen of the floor.
@@ -174,7 +171,6 @@ TEST(GravityFromFloor, SameBitsForSamePoints) {
   const auto a = gravity_from_floor(room.points, room.cameras, {0, 0.2, 1}), b = gravity_from_floor(room.points, room.cameras, {0, 0.2, 1});
   ASSERT_TRUE(a.is_ok());
   EXPECT_EQ(a->up_map, b->up_map);
-  EXPECT_EQ(a->num_samples, 60000U);
 }
 
 TEST(GravityFromFloor, RefusesWhereThereIsNone) {

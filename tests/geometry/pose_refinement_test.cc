@@ -201,18 +201,6 @@ TEST(PoseRefinement, FindsAWrongFocalLength) {
   EXPECT_GE(num_within_2_sigma, kScenes * 90 / 100);
 }
 
-TEST(PoseRefinement, WrongFocalLengthShowsInTheSignedDepthError) {
-  std::mt19937 rng(17);
-  SceneOptions scene_options;
-  scene_options.assumed_focal_px = 450;
-  PoseRefinementOptions options;
-  options.use_depth = false;
-  options.max_error_px = 20;
-  const Scene scene = make_scene(rng, scene_options);
-  const PoseRefinementResult result = refine_pose(scene.pairs, scene.T_map_camera, 450, options, nullptr);
-  EXPECT_GT(std::abs(result.mean_relative_depth_error), 0.05);
-}
-
 TEST(PoseRefinement, KeepsPrecisionFarFromTheOrigin) {
   SceneOptions scene;
   scene.centre << 60, -40, 3;

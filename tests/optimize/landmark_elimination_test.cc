@@ -36,9 +36,7 @@ struct Sight {
     priors.push_back({0, X + testing::random_vector(rng, 0.02), 0.03});
   }
 
-  [[nodiscard]] LandmarkObservations landmark() const {
-    return {observations.data(), observations.data() + observations.size(), priors.data(), priors.data() + priors.size()};
-  }
+  [[nodiscard]] LandmarkObservations landmark() const { return {observations, priors}; }
 
   /// Cost after a change of (camera 1, camera 2, landmark).
   [[nodiscard]] double cost(const Eigen::VectorXd& change) const {
@@ -96,7 +94,7 @@ TEST(LandmarkElimination, StepIsThatOfTheWholeSystem) {
     // The kernels' weights make it the gradient of the robust cost.
     EXPECT_LT((g - gradient(sight, Eigen::VectorXd::Zero(15))).norm(), 1e-5 * g.norm());
 
-    PoseEquations reduced(2);
+    BlockSystem reduced(2);
     LandmarkEliminator eliminator(sight.options, cameras);
     const double cost = eliminator.eliminate(sight.landmark(), sight.X, 0.0, &reduced);
     EXPECT_NEAR(cost, sight.cost(Eigen::VectorXd::Zero(15)), 1e-9 * cost);
@@ -104,10 +102,10 @@ TEST(LandmarkElimination, StepIsThatOfTheWholeSystem) {
     const Eigen::MatrixXd S = H.topLeftCorner(12, 12) - H.topRightCorner(12, 3) * C_inverse * H.bottomLeftCorner(3, 12);
     const Eigen::VectorXd s = g.head(12) - H.topRightCorner(12, 3) * C_inverse * g.tail<3>();
     for (std::uint32_t column = 0; column < 2; ++column) {
-      EXPECT_LT((reduced.diagonal[column] - H.diagonal().segment<6>(6 * column)).norm(), 1e-6 * H.norm());
-      EXPECT_LT((reduced.system.gradient(column) - s.segment<6>(6 * column)).norm(), 1e-6 * g.norm());
+      EXPECT_LT((reduced.diagonal(column) - H.diagonal().segment<6>(6 * column)).norm(), 1e-6 * H.norm());
+      EXPECT_LT((reduced.gradient(column) - s.segment<6>(6 * column)).norm(), 1e-6 * g.norm());
       for (std::uint32_t row = 0; row <= column; ++row) {
-        const Eigen::Map<const Matrix6d> block(reduced.system.block(row, column));
+        const Eigen::Map<const Matrix6d> block(reduced.block(row, column));
         EXPECT_LT((block - S.block<6, 6>(6 * row, 6 * column)).norm(), 1e-6 * H.norm());
       }
     }

@@ -2,10 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Features without depth that two keyframes see.
-#include "core/slam/far_landmarks.h"
-
 #include <gtest/gtest.h>
 
+#include "core/slam/keyframe_insertion.h"
 #include "tests/geometry/generated.h"
 #include "tests/slam/true_keyframes.h"
 

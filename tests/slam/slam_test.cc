@@ -162,8 +162,7 @@ TEST(Slam, BlankViewsAreLostAndThenTrackingIsFoundBack) {
   EXPECT_EQ(slam.counts().num_losses, 1U);
   EXPECT_EQ(slam.counts().num_segments, 1U);
   for (std::size_t i = 25; i < 30; ++i) EXPECT_EQ(walk.reports[i].state, ViewState::kLost);
-  EXPECT_TRUE(walk.reports[30].is_found_back);
-  for (std::size_t i = 31; i < 60; ++i) EXPECT_FALSE(walk.reports[i].is_found_back);
+  for (std::size_t i = 30; i < 60; ++i) EXPECT_EQ(walk.reports[i].state, ViewState::kTracked);
   EXPECT_EQ(result.poses.size(), 55U);
   EXPECT_LT(trajectory_error_m(result, 0, walk.T_world_camera), 0.015);
 }
@@ -177,7 +176,7 @@ TEST(Slam, IsFoundBackAtAPlaceOfBefore) {
   const Walk walk = walk_through(&viewer, poses, &slam, [&](std::uint64_t frame, FrameFeatures* view) {
     if (frame >= 76 && frame < 81) *view = viewer.blank(frame);
   });
-  EXPECT_TRUE(walk.reports[81].is_found_back);
+  EXPECT_EQ(walk.reports[81].state, ViewState::kTracked);
   EXPECT_EQ(slam.counts().num_segments, 1U);
   EXPECT_LT(trajectory_error_m(slam.finish(), 0, walk.T_world_camera), 0.015);
 }

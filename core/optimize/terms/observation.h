@@ -17,8 +17,8 @@
 #pragma once
 
 #include "core/geometry/rigid3.h"
+#include "core/optimize/block_system.h"
 #include "core/optimize/bundle_problem.h"
-#include "core/optimize/pose_equations.h"
 
 namespace camloc {
 

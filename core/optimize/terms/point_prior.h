@@ -9,8 +9,6 @@
 #include <cmath>
 #include <cstdint>
 
-#include "core/optimize/landmark_block.h"
-
 namespace camloc {
 
 struct PointPrior {
@@ -22,9 +20,6 @@ struct PointPrior {
   [[nodiscard]] bool is_usable() const { return position_m.allFinite() && sigma_m > 0 && std::isfinite(sigma_m); }
 
   [[nodiscard]] double cost(const Eigen::Vector3d& X) const { return weight() * (X - position_m).squaredNorm(); }
-  void add_to(const Eigen::Vector3d& X, LandmarkBlock* block) const { block->add_isotropic(weight(), X - position_m); }
-
- private:
   [[nodiscard]] double weight() const { return 1.0 / (sigma_m * sigma_m); }
 };
 

@@ -12,13 +12,16 @@
 // tests/optimize/term_seam_test.cc is an example. Terms of observations are in observation.h.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "core/geometry/rigid3.h"
-#include "core/optimize/pose_equations.h"
+#include "core/optimize/block_system.h"
 #include "core/optimize/terms/kernels.h"
 
 namespace camloc {
@@ -31,6 +34,29 @@ struct PoseResidual {
   std::array<Eigen::Matrix<double, kRows, 6>, kPoses> J;
 };
 
+/// D with log(exp(r) exp(d)) = r + D d for small d: the inverse right Jacobian of SO(3).
+[[nodiscard]] inline Eigen::Matrix3d inverse_right_jacobian(const Eigen::Vector3d& r) {
+  const Eigen::Matrix3d cross = cross_matrix(r);
+  const double angle_squared = r.squaredNorm(), angle = std::sqrt(angle_squared);
+  // The series below 1e-2 rad: the closed form loses digits there.
+  const double factor = angle < 1e-2 ? 1.0 / 12.0 + angle_squared / 720.0 : (1.0 - 0.5 * angle / std::tan(0.5 * angle)) / angle_squared;
+  return Eigen::Matrix3d::Identity() + 0.5 * cross + factor * cross * cross;
+}
+
+/// Residuals and derivatives times L^-1, with covariance = L L'. Where it is not positive definite, or the residual not finite, the
+/// residual becomes infinite and the derivatives zero.
+template <int kPoses>
+void whiten(const Matrix6d& covariance, PoseResidual<6, kPoses>* term) {
+  const Eigen::LLT<Matrix6d> factor(covariance);
+  if (covariance.allFinite() && factor.info() == Eigen::Success && term->residual.allFinite()) {
+    factor.matrixL().solveInPlace(term->residual);
+    for (Matrix6d& J : term->J) factor.matrixL().solveInPlace(J);
+    return;
+  }
+  term->residual.setConstant(std::numeric_limits<double>::infinity());
+  for (Matrix6d& J : term->J) J.setZero();
+}
+
 /// A block of terms. `rows` says where the poses are in the equations, kFixedPose for those that are held.
 class PoseTerms {
  public:
@@ -41,7 +67,7 @@ class PoseTerms {
   [[nodiscard]] virtual double add_cost(const std::vector<Rigid3>& T_map_pose, double cost) const = 0;
   /// The same, and adds the terms to the equations.
   virtual double add(const std::vector<Rigid3>& T_map_pose, const std::vector<std::uint32_t>& rows, double cost,
-                     PoseEquations* equations) const = 0;
+                     BlockSystem* equations) const = 0;
 };
 
 /// Refers to the terms; all are under Cauchy's kernel of that width over the length of their residuals, 0 = none.
@@ -63,7 +89,7 @@ class PoseTermsOf final : public PoseTerms {
   }
 
   double add(const std::vector<Rigid3>& T_map_pose, const std::vector<std::uint32_t>& rows, double cost,
-             PoseEquations* equations) const override {
+             BlockSystem* equations) const override {
     for (const Term& term : terms_) {
       const auto [residual, J] = linearize(term, T_map_pose);
       const RobustCost robust = cauchy(residual.squaredNorm(), kernel_sigmas_);
@@ -94,19 +120,19 @@ class PoseTermsOf final : public PoseTerms {
     return term.linearize(own);
   }
 
-  static void add_pose(const Jacobian& J, const Residual& residual, double weight, std::uint32_t row, PoseEquations* equations) {
+  static void add_pose(const Jacobian& J, const Residual& residual, double weight, std::uint32_t row, BlockSystem* equations) {
     if (row == kFixedPose) return;
     const Matrix6d H = weight * J.transpose() * J;
-    Eigen::Map<Matrix6d>(equations->system.block(row, row)) += H;
-    equations->diagonal[row] += H.diagonal();
-    equations->system.gradient(row) += weight * J.transpose() * residual;
+    Eigen::Map<Matrix6d>(equations->block(row, row)) += H;
+    equations->diagonal(row) += H.diagonal();
+    equations->gradient(row) += weight * J.transpose() * residual;
   }
 
-  static void add_pair(const std::array<Jacobian, 2>& J, double weight, std::uint32_t i, std::uint32_t j, PoseEquations* equations) {
+  static void add_pair(const std::array<Jacobian, 2>& J, double weight, std::uint32_t i, std::uint32_t j, BlockSystem* equations) {
     if (i == kFixedPose || j == kFixedPose) return;
     const Jacobian& J_row = i < j ? J[0] : J[1];
     const Jacobian& J_column = i < j ? J[1] : J[0];
-    Eigen::Map<Matrix6d>(equations->system.block(std::min(i, j), std::max(i, j))) += weight * J_row.transpose() * J_column;
+    Eigen::Map<Matrix6d>(equations->block(std::min(i, j), std::max(i, j))) += weight * J_row.transpose() * J_column;
   }
 
   std::span<const Term> terms_;

@@ -5,7 +5,7 @@
 // covariance = L L'.
 #pragma once
 
-#include "core/optimize/terms/pose_error_terms.h"
+#include "core/optimize/terms/pose_terms.h"
 
 namespace camloc {
 

@@ -39,10 +39,6 @@ LoopReport LoopCloser::consider(std::uint32_t keyframe, const PlaceIndex& places
   reckoning_.note_links(keyframe);
   std::optional<LoopMatch> match = detector_.find(keyframe, places);
   if (!match) return report;
-  report.is_found = true;
-  report.place = match->place;
-  report.T_place_keyframe = match->T_place_keyframe;
-  report.num_inliers = match->registration.num_inliers;
   const double drift_inconsistency = match->drift_inconsistency;
   std::erase_if(pending_, [&](const LoopMatch& p) { return keyframe > p.keyframe + kMaxPendingGap || !agrees(p, *match); });
   pending_.push_back(std::move(*match));
@@ -52,9 +48,6 @@ LoopReport LoopCloser::consider(std::uint32_t keyframe, const PlaceIndex& places
   const std::vector<LoopMatch> matches = std::move(pending_);
   pending_.clear();
   const LoopMatch& last = matches.back();
-  const Eigen::Vector3d position = map_->keyframe(keyframe).view.T_map_camera.translation;
-  report.correction_m = (last.T_correction * position - position).norm();
-  report.correction_rad = rotation_distance_rad(last.T_correction.rotation, Eigen::Quaterniond::Identity());
   const std::uint32_t now = map_->keyframe(keyframe).segment, then = map_->keyframe(last.place).segment;
   report.is_joined = now != then;
   if (report.is_joined) map_->join_segments(now, then, last.T_correction);
@@ -72,15 +65,14 @@ bool LoopCloser::is_confirmed(double drift_inconsistency) const {
   if (map_->keyframe(last.place).segment == map_->keyframe(last.keyframe).segment)
     return count >= (drift_inconsistency > 1 ? numbers_.loop_confirmations : 1);
   if (reckoning_.begin_between(last.place, last.keyframe) != nullptr) return count >= kConfirmationsWithinReach;
-  const double walked =
-      (map_->keyframe(first.keyframe).view.T_map_camera.translation - map_->keyframe(last.keyframe).view.T_map_camera.translation).norm();
-  return count >= kConfirmationsOutOfReach && walked >= kMinJoinedPathM;
+  const double moved_m = (map_->T_map_camera(first.keyframe).translation - map_->T_map_camera(last.keyframe).translation).norm();
+  return count >= kConfirmationsOutOfReach && moved_m >= kMinJoinedPathM;
 }
 
 // Both move the newer one's keyframe to the same pose.
 bool LoopCloser::agrees(const LoopMatch& a, const LoopMatch& b) const {
   if (map_->keyframe(a.place).segment != map_->keyframe(b.place).segment) return false;
-  const Rigid3 T_map_now = map_->keyframe(b.keyframe).view.T_map_camera;
+  const Rigid3 T_map_now = map_->T_map_camera(b.keyframe);
   const Rigid3 by_a = a.T_correction * T_map_now, by_b = b.T_correction * T_map_now;
   return (by_a.translation - by_b.translation).norm() <= kAgreementM &&
          rotation_distance_rad(by_a.rotation, by_b.rotation) <= kAgreementRad;
@@ -119,7 +111,7 @@ bool LoopCloser::spread_error(const std::vector<LoopMatch>& matches) {
     if (map_->keyframe(edge.i).segment == segment) graph.edges.push_back(edge);
   }
   for (const LoopMatch& match : matches) graph.edges.push_back({match.place, match.keyframe, match.T_place_keyframe, match.covariance});
-  const PoseGraphReport report = optimize_pose_graph({}, &graph);
+  const PoseGraphReport report = optimize_pose_graph(&graph);
   const auto worst = std::max_element(report.edge_chi2.begin(), report.edge_chi2.begin() + num_links);
   if (num_links > 0 && !(*worst <= numbers_.loop_max_chi2)) return false;
   edges_.insert(edges_.end(), graph.edges.end() - static_cast<std::ptrdiff_t>(matches.size()), graph.edges.end());
@@ -133,7 +125,7 @@ void LoopCloser::move_to(const std::vector<Rigid3>& T_map_keyframe) {
     SlamLandmark& landmark = map_->landmark(i);
     if (!landmark.is_alive()) continue;
     const std::uint32_t k = landmark.observations.front().keyframe;
-    const Rigid3 T_new_old = T_map_keyframe[k] * map_->keyframe(k).view.T_map_camera.inverse();
+    const Rigid3 T_new_old = T_map_keyframe[k] * map_->T_map_camera(k).inverse();
     landmark.position_m = T_new_old * landmark.position_m;
     landmark.direction = T_new_old.rotation * landmark.direction;
   }

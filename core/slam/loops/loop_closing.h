@@ -19,14 +19,10 @@
 
 namespace camloc {
 
+/// What a keyframe led to.
 struct LoopReport {
-  bool is_found = false;                      ///< a possible place was seen again
   bool is_closed = false, is_joined = false;  ///< a loop in its segment; two segments became one
   bool is_refused = false;                    ///< confirmed, but the pose graph would have to stretch too far
-  std::uint32_t place = 0;
-  std::uint32_t num_inliers = 0;
-  Rigid3 T_place_keyframe;
-  double correction_m = 0, correction_rad = 0;
 };
 
 class LoopCloser {

@@ -31,7 +31,7 @@ std::optional<LoopMatch> LoopDetector::find(std::uint32_t keyframe, const PlaceI
   const auto best = std::max_element(candidates.begin(), candidates.end(),
                                      [](const Candidate& a, const Candidate& b) { return a.found.num_inliers < b.found.num_inliers; });
   if (best == candidates.end() || !is_convincing(best->found, kPlaceLimits) || has_rival(*best, candidates)) return std::nullopt;
-  const Rigid3 T_map_place = map_->keyframe(best->place).view.T_map_camera;
+  const Rigid3 T_map_place = map_->T_map_camera(best->place);
   LoopMatch match;
   match.keyframe = keyframe;
   match.place = best->place;

@@ -3,10 +3,10 @@
 //
 // Has this place been seen before? Words propose, and so does the map itself where the drift is small; geometry verifies, and
 // look-alikes are sorted out: a place counts when
-//   - many landmarks of it fit the view, with pixels and with depth, spread over the image;
-//   - the correction it asks for is possible for the path walked since then (same segment), or for the time that passed while the
+//   - many landmarks of it fit the frame, with pixels and with depth, spread over the image;
+//   - the correction it asks for is possible for the path since then (same segment), or for the time that passed while the
 //     camera was lost (the next one);
-//   - no other possible place explains the view nearly as well.
+//   - no other possible place explains the frame nearly as well.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Which earlier keyframes look like this view, while the map still grows: visual words and an inverted file (Sivic and
+// Which earlier keyframes look like this frame, while the map still grows: visual words and an inverted file (Sivic and
 // Zisserman, "Video Google", 2003). The words are trained from the keyframes themselves, and anew whenever their number has
 // doubled, so that no vocabulary has to be shipped.
 #pragma once
