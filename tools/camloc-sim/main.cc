@@ -21,7 +21,7 @@ using camloc::sim::SceneKind;
 
 void add_options(CLI::App* app, std::string* out, camloc::sim::DatasetOptions* options, std::string* only) {
   app->add_option("--out", *out, "Folder to write to; created, must be empty unless --force")->required();
-  app->add_option("--scene", options->kind, "building: corridor loop 57 x 40 m with nine offices; small: a corner and two offices")
+  app->add_option("--scene", options->kind, "building: corridor loop (seed 1: 57 x 40 m) with nine offices; small: a corner and two offices")
       ->transform(
           CLI::CheckedTransformer(std::map<std::string, SceneKind>{{"building", SceneKind::kBuilding}, {"small", SceneKind::kSmall}}))
       ->default_str("building");
