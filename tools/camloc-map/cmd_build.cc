@@ -3,7 +3,6 @@
 //
 // camloc-map build: a recording becomes a map file. Arguments become a BuildRequest here; build_map does the work, watched by the
 // terminal, and its summary is printed as a table or JSON.
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -11,7 +10,6 @@
 #include "core/io/camera_file.h"
 #include "core/map/map_view.h"
 #include "tools/camloc-map/commands.h"
-#include "tools/common/command_line.h"
 #include "tools/common/output_path.h"
 #include "tools/common/terminal_observer.h"
 #include "tools/mapping/build/build_report.h"

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <map>
 #include <memory>
-#include <span>
 
 #include "core/io/replace_file.h"
 #include "tools/camloc-map/commands.h"

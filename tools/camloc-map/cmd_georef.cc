@@ -3,7 +3,6 @@
 //
 // camloc-map georef: where the map lies in the site, from surveyed control points.
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <set>
 
@@ -13,7 +12,6 @@
 #include "core/map/map_view.h"
 #include "core/map/map_writer.h"
 #include "tools/camloc-map/commands.h"
-#include "tools/common/command_line.h"
 #include "tools/common/output_path.h"
 #include "tools/common/terminal_observer.h"
 #include "tools/mapping/site/control_points.h"

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // camloc-map merge: two maps of one building become one.
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // camloc-map view: a picture of a map, and where in it a fix is to be expected.
-#include <cstdio>
 #include <map>
 #include <memory>
 

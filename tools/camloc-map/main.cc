@@ -4,7 +4,6 @@
 // camloc-map: makes maps, on a workstation. `camloc map build` runs this program.
 #include "core/map/mapping_guard.h"
 #include "tools/camloc-map/commands.h"
-#include "tools/common/command_line.h"
 
 int main(int argc, char** argv) {
   camloc::install_mapping_guard();

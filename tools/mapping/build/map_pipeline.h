@@ -4,7 +4,6 @@
 // From a recording to a map file: what `camloc map build` does once its arguments are understood. Read build_map first.
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include "core/base/result.h"

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/mapping/build/posed_frames.h"
 
-#include <optional>
 #include <string_view>
 #include <vector>
 

@@ -7,7 +7,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
 
 #include "core/base/result.h"
 #include "tools/mapping/cloud/cloud_input.h"

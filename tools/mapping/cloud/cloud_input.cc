@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/mapping/cloud/cloud_input.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cstring>
 

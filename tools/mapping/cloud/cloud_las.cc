@@ -3,7 +3,6 @@
 //
 // LAS ("LAS specification 1.4 - R15", ASPRS, 2019). Coordinates are 32-bit integers with a scale and an offset.
 #include <array>
-#include <cmath>
 
 #include "core/base/checked.h"
 #include "tools/mapping/cloud/cloud_formats.h"

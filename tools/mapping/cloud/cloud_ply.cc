@@ -4,7 +4,6 @@
 // PLY (Turk, "The PLY polygon file format", 1994).
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <string>
 #include <vector>
 

@@ -5,7 +5,6 @@
 // the map's are laid onto the cloud's in all 24 ways, and for each the translation is found by sliding the map's cells over the
 // cloud's, which works where the map holds only a part of the scan. The best places are improved by closest points.
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "core/geometry/alignment.h"

@@ -3,7 +3,6 @@
 #include "tools/mapping/eval/dense_cloud.h"
 
 #include <cmath>
-#include <memory>
 
 #include "drivers/sources.h"
 #include "tools/common/frame_reading.h"

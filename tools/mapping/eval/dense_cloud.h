@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 
 #include "core/base/frame.h"
 #include "core/base/result.h"

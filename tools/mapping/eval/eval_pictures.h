@@ -4,8 +4,6 @@
 // The pictures of an evaluation: how the distances are distributed, and where they are.
 #pragma once
 
-#include <Eigen/Core>
-#include <span>
 #include <string>
 
 #include "core/io/image_file.h"

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/mapping/eval/eval_report.h"
 
-#include <algorithm>
-
 #include "tools/common/json_text.h"
 #include "tools/common/text_format.h"
 #include "tools/mapping/eval/eval_warnings.h"

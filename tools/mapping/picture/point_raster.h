@@ -5,7 +5,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 #include <span>
 #include <string>
 #include <vector>

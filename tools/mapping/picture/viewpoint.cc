@@ -4,7 +4,6 @@
 // Viewpoints from which a set of points fills a picture; the drawing itself is in point_raster.cc.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "core/base/order_statistics.h"

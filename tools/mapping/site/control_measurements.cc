@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 
 #include "tools/common/text_format.h"
 #include "tools/mapping/site/control_points.h"
