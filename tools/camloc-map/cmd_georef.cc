@@ -17,7 +17,6 @@
 #include "tools/mapping/site/control_points.h"
 #include "tools/mapping/site/frame_localization.h"
 #include "tools/mapping/site/georef_fit.h"
-#include "tools/mapping/site/georef_report.h"
 
 namespace camloc::mapping {
 namespace {

@@ -13,4 +13,10 @@ std::vector<Eigen::Vector3d> landmark_positions(const MapView& map, std::uint32_
   return points;
 }
 
+std::vector<Rigid3> keyframe_poses(const MapView& map) {
+  std::vector<Rigid3> poses;
+  for (std::uint32_t k = 0; k < map.keyframes().size(); ++k) poses.push_back(map.keyframe_pose(k));
+  return poses;
+}
+
 }  // namespace camloc::tools

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The scale of a model is found under noise and outliers, and is refused where the numbers contradict each other.
-#include "tools/mapping/colmap/colmap_scale.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "tests/map/synthetic_map.h"
+#include "tools/mapping/colmap/colmap_poses.h"
 
 namespace camloc::mapping {
 namespace {

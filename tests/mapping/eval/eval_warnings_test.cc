@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Each warning where there is reason for it, and none where there is not.
-#include "tools/mapping/eval/eval_warnings.h"
-
 #include <gtest/gtest.h>
 
 #include <functional>
+
+#include "tools/mapping/eval/eval_report.h"
 
 namespace camloc::mapping {
 namespace {

@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The plan of a map: what is cut off, which way its walls run, and what fits into the picture.
-#include "tools/mapping/picture/map_scene.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <optional>
 
 #include "tests/map/room_map.h"
+#include "tools/mapping/picture/map_picture.h"
 
 namespace camloc::mapping {
 namespace {

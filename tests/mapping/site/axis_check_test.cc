@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Points files in other axes and units are recognised; good ones and mere noise are not accused.
-#include "tools/mapping/site/axis_check.h"
-
 #include <gtest/gtest.h>
 
 #include <vector>
+
+#include "tools/mapping/site/consensus.h"
 
 namespace camloc::mapping {
 namespace {

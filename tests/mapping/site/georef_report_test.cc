@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The residual table and its JSON say what the fit says, of every point.
-#include "tools/mapping/site/georef_report.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+
+#include "tools/mapping/site/georef_fit.h"
 
 namespace camloc::mapping {
 namespace {

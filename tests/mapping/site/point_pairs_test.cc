@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/site/point_pairs.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
+
+#include "tools/mapping/site/control_points.h"
 
 namespace camloc::mapping {
 namespace {

@@ -16,8 +16,8 @@
 #include "tools/common/frame_reading.h"
 #include "tools/mapping/build/merge_pipeline.h"
 #include "tools/mapping/build/recording_check.h"
-#include "tools/mapping/colmap/colmap_scale.h"
-#include "tools/mapping/site/georef_report.h"
+#include "tools/mapping/colmap/colmap_poses.h"
+#include "tools/mapping/site/georef_fit.h"
 
 namespace camloc::mapping {
 

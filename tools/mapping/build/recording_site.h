@@ -14,7 +14,7 @@
 #include "core/slam/slam.h"
 #include "tools/mapping/build/recording_tracking.h"
 #include "tools/mapping/site/control_points.h"
-#include "tools/mapping/site/georef_report.h"
+#include "tools/mapping/site/georef_fit.h"
 
 namespace camloc::mapping {
 

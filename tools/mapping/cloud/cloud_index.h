@@ -44,4 +44,9 @@ class CloudIndex {
   std::unique_ptr<Impl> impl_;
 };
 
+/// A rotation whose columns are the direction that most surfaces face, the one across it that most of the others face, and the
+/// third. Surfaces are planes through neighbouring points, which are about a decimetre apart. Principal axes of the points
+/// where there are no surfaces.
+[[nodiscard]] Eigen::Matrix3d wall_directions(const std::vector<Eigen::Vector3d>& points_m);
+
 }  // namespace camloc::mapping

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/cloud/wall_directions.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

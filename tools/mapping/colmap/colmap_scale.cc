@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/colmap/colmap_scale.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "tools/common/text_format.h"
+#include "tools/mapping/colmap/colmap_poses.h"
 
 namespace camloc::mapping {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/base/order_statistics.h"
 #include "tools/common/text_format.h"
-#include "tools/mapping/cloud/wall_directions.h"
+#include "tools/mapping/cloud/cloud_index.h"
 #include "tools/mapping/picture/point_raster.h"
 
 namespace camloc::mapping {

@@ -4,7 +4,6 @@
 
 #include "tools/common/json_text.h"
 #include "tools/common/text_format.h"
-#include "tools/mapping/eval/eval_warnings.h"
 
 namespace camloc::mapping {
 namespace {

@@ -24,4 +24,7 @@ struct EvalSummary {
 [[nodiscard]] std::string format_table(const EvalSummary& summary);
 [[nodiscard]] std::string format_json(const EvalSummary& summary);
 
+/// What to be careful about: one line each, that begins with a word in capitals: SCALE, VOLUME, POINTS, START, OVERLAP, SLIDING, ICP.
+[[nodiscard]] std::vector<std::string> warnings_of(const Evaluation& evaluation);
+
 }  // namespace camloc::mapping

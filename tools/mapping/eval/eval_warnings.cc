@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/eval/eval_warnings.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "tools/common/text_format.h"
+#include "tools/mapping/eval/eval_report.h"
 
 namespace camloc::mapping {
 namespace {

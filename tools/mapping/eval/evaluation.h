@@ -17,7 +17,7 @@
 #include "tools/mapping/cloud/cloud_distance.h"
 #include "tools/mapping/cloud/cloud_registration.h"
 #include "tools/mapping/cloud/point_cloud.h"
-#include "tools/mapping/site/point_pairs.h"
+#include "tools/mapping/site/control_points.h"
 
 namespace camloc::mapping {
 

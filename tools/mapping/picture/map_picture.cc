@@ -6,6 +6,7 @@
 #include "tools/mapping/picture/map_picture.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -23,8 +24,8 @@ constexpr int kMarginPx = 24, kHeaderPx = 58, kPanelMarginPx = 46, kListHeightPx
 constexpr double kWedgePx = 15, kWedgeHalfAngle = 0.42;
 constexpr double kCameraPx = 13;
 constexpr std::size_t kManyLandmarks = 60000;
-constexpr double kBareWalkM = 1.0;          // from the nearest keyframe
-constexpr double kMaxTrajectoryGapM = 1.0;  // a line across a gap would show a walk that nobody made
+constexpr double kBareM = 1.0;              // from the nearest keyframe; farther along the trajectory there was too little to see
+constexpr double kMaxTrajectoryGapM = 1.0;  // a line across a gap would show a way that nobody went
 
 void blit(const ColorImage& from, int u, int v, ColorImage* to) {
   for (int y = 0; y < from.height && v + y < to->height; ++y) {
@@ -51,32 +52,11 @@ void draw_height_legend(const Scene& scene, PointRaster* raster, int width, int 
                      paper_ramp());
 }
 
-void draw_walk(const Scene& scene, const Viewpoint& view, double line_px, PointRaster* raster) {
-  std::vector<Eigen::Vector3d> line;
-  for (const Eigen::Vector3d& position : scene.walk) {
-    if (!line.empty() && (position - line.back()).norm() > kMaxTrajectoryGapM) {
-      raster->add_line(view, line, kTrajectory, line_px);
-      line.clear();
-    }
-    line.push_back(position);
-  }
-  if (line.size() > 1) raster->add_line(view, line, kTrajectory, line_px);
-}
-
-Eigen::Vector2d pixel_of(const Viewpoint& view, const Eigen::Vector3d& p) {
-  const Eigen::Vector3d p_view = view.T_view_world * p;
-  return Eigen::Vector2d(view.center_u, view.center_v) +
-         p_view.head<2>() * (view.is_perspective ? view.px_per_m / p_view.z() : view.px_per_m);
-}
-
-/// Keyframes as small pyramids, as many as keep apart in the picture.
-void draw_cameras(const Scene& scene, const Viewpoint& view, double size_m, PointRaster* raster) {
-  std::vector<Eigen::Vector2d> drawn;
-  for (std::uint32_t k = 0; k < scene.keyframes.size(); ++k) {
-    const Eigen::Vector2d at = pixel_of(view, scene.keyframes[k]);
-    if (std::any_of(drawn.begin(), drawn.end(), [&](const Eigen::Vector2d& other) { return (other - at).norm() < kCameraPx; })) continue;
-    drawn.push_back(at);
-    raster->add_camera(view, scene.picture->map->keyframe_pose(k), size_m, kCamera);
+void draw_trajectory(const Scene& scene, const Viewpoint& view, double line_px, PointRaster* raster) {
+  const std::vector<Rigid3>& poses = scene.picture->trajectory;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const std::array line{poses[i - 1].translation, poses[i].translation};
+    if ((line[1] - line[0]).norm() <= kMaxTrajectoryGapM) raster->add_line(view, line, kTrajectory, line_px);
   }
 }
 
@@ -84,8 +64,8 @@ ColorImage draw_top(const Scene& scene, const Plan& plan, int width, int height)
   PointRaster raster(width, height, kBackground);
   const Viewpoint view = top_view(plan, width, height, kPanelMarginPx);
   raster.add_points(view, scene.landmarks, scene.colors, 1.0);
-  draw_walk(scene, view, 2, &raster);
-  draw_cameras(scene, view, kCameraPx / view.px_per_m, &raster);
+  draw_trajectory(scene, view, 2, &raster);
+  raster.add_cameras(view, scene.keyframes, kCameraPx, kCameraPx / view.px_per_m, kCamera);
   draw_frame(&raster, width, height,
              scene.is_cut ? "From above, cut 0.6 m above the cameras; triangles are keyframes" : "From above; triangles are keyframes");
   raster.add_rectangle(2, height - 34, width / 5 + 90, 32, kBackground);
@@ -97,15 +77,15 @@ ColorImage draw_top(const Scene& scene, const Plan& plan, int width, int height)
 ColorImage draw_perspective(const Scene& scene, int width, int height) {
   PointRaster raster(width, height, kBackground);
   std::vector<Eigen::Vector3d> framed = scene.landmarks;
-  // Keyframes count a tenth of what landmarks do, or the percentiles would cut off a walk along bare walls.
+  // Keyframes count a tenth of what landmarks do, or the percentiles would cut off those along bare walls.
   const std::size_t repeats = scene.landmarks.size() / (10 * std::max<std::size_t>(1, scene.keyframes.size())) + 1;
-  for (const Eigen::Vector3d& p : scene.keyframes) framed.insert(framed.end(), repeats, p);
+  for (const Rigid3& pose : scene.keyframes) framed.insert(framed.end(), repeats, pose.translation);
   const Viewpoint view = fit_perspective_view(framed, scene.up, width, height, 2 * kPanelMarginPx);
   raster.add_points(view, scene.landmarks, scene.colors, 1.0);
-  draw_walk(scene, view, 2, &raster);
+  draw_trajectory(scene, view, 2, &raster);
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& p : framed) middle += p / static_cast<double>(framed.size());
-  draw_cameras(scene, view, kCameraPx * (view.T_view_world * middle).z() / view.px_per_m, &raster);
+  raster.add_cameras(view, scene.keyframes, kCameraPx, kCameraPx * (view.T_view_world * middle).z() / view.px_per_m, kCamera);
   draw_frame(&raster, width, height, "In perspective");
   return raster.image();
 }
@@ -130,7 +110,7 @@ void draw_wedges(const Scene& scene, const Viewpoint& view, FixOutlook outlook, 
   std::vector<Eigen::Vector3d> points;
   for (std::uint32_t k = 0; k < scene.picture->places.size(); ++k) {
     if (scene.picture->places[k].outlook != outlook) continue;
-    const Rigid3 T_map_camera = scene.picture->map->keyframe_pose(k);
+    const Rigid3& T_map_camera = scene.keyframes[k];
     const Eigen::Vector2d ahead = (axes * (T_map_camera.rotation * Eigen::Vector3d::UnitZ())).head<2>();
     const bool is_disc = ahead.norm() < 0.3;  // looks up or down
     const Eigen::Vector2d right = is_disc ? Eigen::Vector2d(1, 0) : Eigen::Vector2d(ahead.normalized());
@@ -144,16 +124,14 @@ void draw_wedges(const Scene& scene, const Viewpoint& view, FixOutlook outlook, 
   raster->add_points(view, points, color_of(outlook), 0.5);
 }
 
-bool is_bare(const Scene& scene, const Eigen::Vector3d& position) {
-  return std::none_of(scene.keyframes.begin(), scene.keyframes.end(),
-                      [&](const Eigen::Vector3d& p) { return (p - position).norm() < kBareWalkM; });
-}
-
-/// What was walked without a keyframe near: there was too little to see.
-void draw_bare_walk(const Scene& scene, const Viewpoint& view, PointRaster* raster) {
-  for (std::size_t i = 1; i < scene.walk.size(); ++i) {
-    if ((scene.walk[i] - scene.walk[i - 1]).norm() > kMaxTrajectoryGapM || !is_bare(scene, scene.walk[i])) continue;
-    raster->add_line(view, std::span(scene.walk).subspan(i - 1, 2), color_of(FixOutlook::kScanAgain), 5);
+/// Where no keyframe is near.
+void draw_bare_trajectory(const Scene& scene, const Viewpoint& view, PointRaster* raster) {
+  const std::vector<Rigid3>& poses = scene.picture->trajectory;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const std::array line{poses[i - 1].translation, poses[i].translation};
+    const auto is_near = [&](const Rigid3& keyframe) { return (keyframe.translation - line[1]).norm() < kBareM; };
+    if ((line[1] - line[0]).norm() > kMaxTrajectoryGapM || std::any_of(scene.keyframes.begin(), scene.keyframes.end(), is_near)) continue;
+    raster->add_line(view, line, color_of(FixOutlook::kScanAgain), 5);
   }
 }
 
@@ -162,10 +140,10 @@ void draw_numbers(const Scene& scene, const Viewpoint& view, PointRaster* raster
   const Eigen::Matrix3d axes = view.T_view_world.rotation.toRotationMatrix();
   std::vector<Eigen::Vector2d> taken;
   for (std::size_t i = 0; i < scene.picture->weak.size(); ++i) {
-    const Rigid3 pose = scene.picture->map->keyframe_pose(scene.picture->weak[i].keyframe);
+    const Rigid3& pose = scene.keyframes[scene.picture->weak[i].keyframe];
     const Eigen::Vector2d ahead = (axes * (pose.rotation * Eigen::Vector3d::UnitZ())).head<2>();
     const Eigen::Vector2d direction = ahead.norm() < 0.3 ? Eigen::Vector2d(0, -1) : Eigen::Vector2d(ahead.normalized());
-    Eigen::Vector2d at = pixel_of(view, pose.translation) + (kWedgePx + 11) * direction;
+    Eigen::Vector2d at = view.pixel_of(view.T_view_world * pose.translation) + (kWedgePx + 11) * direction;
     const auto collides = [&](const Eigen::Vector2d& other) { return (other - at).norm() < 22; };
     for (int tries = 0; tries < 20 && std::any_of(taken.begin(), taken.end(), collides); ++tries) at += 12 * direction;
     taken.push_back(at);
@@ -185,8 +163,8 @@ ColorImage draw_coverage(const Scene& scene, const Plan& plan, int width, int he
   raster.add_points(view, scene.landmarks, kLandmark, scene.landmarks.size() < kManyLandmarks ? 1.0 : 0.5);
   for (const FixOutlook outlook : {FixOutlook::kLikely, FixOutlook::kLookAlike, FixOutlook::kScanAgain})
     draw_wedges(scene, view, outlook, &raster);
-  draw_walk(scene, view, 1, &raster);
-  draw_bare_walk(scene, view, &raster);
+  draw_trajectory(scene, view, 1, &raster);
+  draw_bare_trajectory(scene, view, &raster);
   draw_numbers(scene, view, &raster);
   draw_frame(&raster, width, height, "Where a fix is to be expected; a wedge opens the way the camera looked");
   raster.add_rectangle(2, height - 34, width / 5 + 90, 32, kBackground);
@@ -224,7 +202,7 @@ void draw_shares(const Scene& scene, PointRaster* raster, int* v) {
   }
   raster->add_text(12, *v, "shares of keyframes; grey: landmarks", kSmallPx, kSoftInk);
   *v += 26;
-  if (!scene.walk.empty()) {
+  if (!scene.picture->trajectory.empty()) {
     raster->add_rectangle(12, *v - 6, 16, 2, kTrajectory);
     raster->add_text(38, *v, "walk", kSmallPx, kSoftInk);
     raster->add_rectangle(110, *v - 8, 16, 6, color_of(FixOutlook::kScanAgain));
@@ -259,13 +237,6 @@ ColorImage draw_list(const Scene& scene, int width, int height) {
   return raster.image();
 }
 
-ColorImage empty_sheet(int width, int height) {
-  ColorImage sheet{{}, width, height};
-  sheet.pixels.resize(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  for (std::size_t i = 0; i < sheet.pixels.size(); ++i) sheet.pixels[i] = kBackground[i % 3];
-  return sheet;
-}
-
 /// Height of a panel of that width in which the plan fills both directions, within reason.
 int height_for(const Plan& plan, int width, int least) {
   const double inner = std::max(1, width - 2 * kPanelMarginPx) * plan.v.length() / plan.u.length();
@@ -276,7 +247,7 @@ int height_for(const Plan& plan, int width, int least) {
 ColorImage draw_coverage_row(const Scene& scene, const Plan& plan, int width) {
   const int list_width = std::clamp(width / 3, 340, 500), map_width = std::max(1, width - list_width - kMarginPx);
   const int height = height_for(plan, map_width, kListHeightPx);
-  ColorImage row = empty_sheet(width, height);
+  ColorImage row = tools::blank_image(width, height, kBackground);
   blit(draw_coverage(scene, plan, map_width, height), 0, 0, &row);
   blit(draw_list(scene, list_width, height), width - list_width, 0, &row);
   return row;
@@ -285,7 +256,7 @@ ColorImage draw_coverage_row(const Scene& scene, const Plan& plan, int width) {
 /// Plan and perspective side by side.
 ColorImage draw_view_row(const Scene& scene, const Plan& plan, int width) {
   const int half = (width - kMarginPx) / 2, height = height_for(plan, half, half / 2);
-  ColorImage row = empty_sheet(width, height);
+  ColorImage row = tools::blank_image(width, height, kBackground);
   blit(draw_top(scene, plan, half, height), 0, 0, &row);
   blit(draw_perspective(scene, half, height), width - half, 0, &row);
   return row;
@@ -297,18 +268,16 @@ ColorImage draw_panels(const Scene& scene, MapPanel panel, int width) {
   if (panel == MapPanel::kPerspective) return draw_perspective(scene, width, 5 * width / 8);
   if (panel == MapPanel::kCoverage) return draw_coverage_row(scene, plan, width);
   const ColorImage views = draw_view_row(scene, plan, width), coverage = draw_coverage_row(scene, plan, width);
-  ColorImage sheet = empty_sheet(width, views.height + kMarginPx + coverage.height);
+  ColorImage sheet = tools::blank_image(width, views.height + kMarginPx + coverage.height, kBackground);
   blit(views, 0, 0, &sheet);
   blit(coverage, 0, views.height + kMarginPx, &sheet);
   return sheet;
 }
 
 std::string title_of(const MapInfo& info) {
-  std::string name = info.name.empty() ? info.path : info.name;
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return name + ":  " + std::to_string(info.num_landmarks) + " landmarks, " + std::to_string(info.num_keyframes) + " keyframes, " +
-         std::to_string(info.file_bytes / 1000) + " kB" + (info.wcs ? ", in site coordinates" : "");
+  return (info.name.empty() ? info.path : info.name) + ":  " + std::to_string(info.num_landmarks) + " landmarks, " +
+         std::to_string(info.num_keyframes) + " keyframes, " + std::to_string(info.file_bytes / 1000) + " kB" +
+         (info.wcs ? ", in site coordinates" : "");
 }
 
 }  // namespace
@@ -325,11 +294,10 @@ Rgb color_of(FixOutlook outlook) {
 ColorImage draw_map(const MapPicture& picture, MapPanel panel, int width_px) {
   const Scene scene = make_scene(picture);
   const ColorImage panels = draw_panels(scene, panel, width_px - 2 * kMarginPx);
-  PointRaster sheet(width_px, panels.height + kHeaderPx + kMarginPx, kBackground);
-  sheet.add_text(kMarginPx, 36, title_of(picture.map->info()), kTitlePx, kInk);
-  ColorImage image = sheet.image();
-  blit(panels, kMarginPx, kHeaderPx, &image);
-  return image;
+  ColorImage sheet = tools::blank_image(width_px, panels.height + kHeaderPx + kMarginPx, kBackground);
+  tools::draw_text(&sheet, kMarginPx, 36, title_of(picture.map->info()), kTitlePx, kInk);
+  blit(panels, kMarginPx, kHeaderPx, &sheet);
+  return sheet;
 }
 
 }  // namespace camloc::mapping

@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/picture/map_scene.h"
-
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 
 #include "core/base/order_statistics.h"
 #include "tools/common/map_points.h"
+#include "tools/mapping/picture/map_picture.h"
 #include "tools/mapping/site/map_up.h"
 
 namespace camloc::mapping {
@@ -16,7 +15,7 @@ namespace {
 
 constexpr double kCutAboveCamerasM = 0.6;  // landmarks higher above the highest keyframe hide the floor plan
 
-/// Along an axis: landmarks from the 1st to the 99th percentile, and everything that was walked.
+/// Along an axis: landmarks from the 1st to the 99th percentile, and every camera.
 Extent extent_along(const Scene& scene, const Eigen::Vector3d& axis) {
   Extent extent{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   const auto add = [&extent](double value) {
@@ -29,8 +28,8 @@ Extent extent_along(const Scene& scene, const Eigen::Vector3d& axis) {
     add(lower_quantile(values, 0.01));
     add(lower_quantile(std::move(values), 0.99));
   }
-  for (const auto* positions : {&scene.keyframes, &scene.walk}) {
-    for (const Eigen::Vector3d& p : *positions) add(axis.dot(p));
+  for (const auto* poses : {&scene.keyframes, &scene.picture->trajectory}) {
+    for (const Rigid3& pose : *poses) add(axis.dot(pose.translation));
   }
   return extent;
 }
@@ -54,13 +53,9 @@ std::span<const Rgb> paper_ramp() { return value_ramp().subspan(45, 170); }
 
 Scene make_scene(const MapPicture& picture) {
   const MapView& map = *picture.map;
-  Scene scene{&picture, up_axis(map), {}, {}, {}, {}, 0, 0, false};
+  Scene scene{&picture, up_axis(map), tools::keyframe_poses(map), {}, {}};
   double cut_m = -std::numeric_limits<double>::infinity();
-  for (std::uint32_t k = 0; k < map.keyframes().size(); ++k) {
-    scene.keyframes.push_back(map.keyframe_pose(k).translation);
-    cut_m = std::max(cut_m, scene.up.dot(scene.keyframes.back()) + kCutAboveCamerasM);
-  }
-  for (const Rigid3& pose : picture.trajectory) scene.walk.push_back(pose.translation);
+  for (const Rigid3& pose : scene.keyframes) cut_m = std::max(cut_m, scene.up.dot(pose.translation) + kCutAboveCamerasM);
   std::vector<double> heights;
   for (const Eigen::Vector3d& p : tools::landmark_positions(map)) {
     const double height = scene.up.dot(p);
@@ -80,37 +75,24 @@ Scene make_scene(const MapPicture& picture) {
 }
 
 Plan make_plan(const Scene& scene) {
-  Eigen::Index flattest = 0;
-  scene.up.cwiseAbs().minCoeff(&flattest);
-  const Eigen::Vector3d first = (Eigen::Vector3d::Unit(flattest) - scene.up * scene.up[flattest]).normalized(),
-                        second = scene.up.cross(first);
-  Eigen::Vector3d right = first;
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
   double best = 0;
-  for (int degrees = 0; degrees < 90; ++degrees) {
-    const double angle = degrees * std::numbers::pi / 180;
-    const Eigen::Vector3d a = std::cos(angle) * first + std::sin(angle) * second;
+  for (const Eigen::Vector3d& a : level_directions(scene.up)) {
     const double score = wall_score(scene, a) + wall_score(scene, scene.up.cross(a));
     if (score < 1.02 * best) continue;  // a turn must be worth it
     best = score;
     right = a;
   }
   if (extent_along(scene, right).length() < extent_along(scene, scene.up.cross(right)).length()) right = scene.up.cross(right);
-  Eigen::Index main = 0;
-  right.cwiseAbs().maxCoeff(&main);
-  if (right[main] < 0) right = -right;
+  right = turned_positive(right);
   const Eigen::Vector3d down = right.cross(scene.up);
   return {right, down, extent_along(scene, right), extent_along(scene, down)};
 }
 
 Viewpoint top_view(const Plan& plan, int width, int height, int margin_px) {
-  Viewpoint view;
   Eigen::Matrix3d axes;
   axes << plan.right.transpose(), plan.down.transpose(), plan.right.cross(plan.down).transpose();
-  view.T_view_world.rotation = Eigen::Quaterniond(axes).normalized();
-  view.px_per_m = std::min(std::max(1, width - 2 * margin_px) / plan.u.length(), std::max(1, height - 2 * margin_px) / plan.v.length());
-  view.center_u = 0.5 * (width - 1) - view.px_per_m * 0.5 * (plan.u.low + plan.u.high);
-  view.center_v = 0.5 * (height - 1) - view.px_per_m * 0.5 * (plan.v.low + plan.v.high);
-  return view;
+  return parallel_view(axes, plan.u, plan.v, width, height, margin_px);
 }
 
 }  // namespace camloc::mapping

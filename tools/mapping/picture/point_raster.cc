@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Points go through a depth buffer of our own; lines and text are OpenCV's, drawn over everything.
+// Points go through a depth buffer; lines and text are drawn over everything.
 #include "tools/mapping/picture/point_raster.h"
 
 #include <algorithm>
@@ -21,12 +21,9 @@ constexpr int kMaxLinePx = 1 << 14;   // what is farther outside is not worth a 
 
 /// Pixel and distance along the view's axis, or nothing behind the eye.
 std::optional<Eigen::Vector3d> project(const Viewpoint& view, const Eigen::Vector3d& p_view) {
-  if (!view.is_perspective) {
-    return Eigen::Vector3d(view.center_u + view.px_per_m * p_view.x(), view.center_v + view.px_per_m * p_view.y(), p_view.z());
-  }
-  if (!(p_view.z() > kNearM)) return std::nullopt;
-  const double scale = view.px_per_m / p_view.z();
-  return Eigen::Vector3d(view.center_u + scale * p_view.x(), view.center_v + scale * p_view.y(), p_view.z());
+  if (view.is_perspective && !(p_view.z() > kNearM)) return std::nullopt;
+  const Eigen::Vector2d pixel = view.pixel_of(p_view);
+  return Eigen::Vector3d(pixel.x(), pixel.y(), p_view.z());
 }
 
 bool is_drawable(const Eigen::Vector3d& pixel) { return pixel.allFinite() && pixel.head<2>().cwiseAbs().maxCoeff() < kMaxLinePx; }
@@ -123,6 +120,16 @@ void PointRaster::add_camera(const Viewpoint& view, const Rigid3& T_world_camera
   for (std::size_t i = 0; i < 4; ++i) corners[i + 1] = T_world_camera * (size_m * Eigen::Vector3d(kX[i], kY[i], 0.7));
   for (const auto& [from, to] : {std::pair{0U, 1U}, {0U, 2U}, {0U, 3U}, {0U, 4U}, {1U, 2U}, {2U, 3U}, {3U, 4U}, {4U, 1U}}) {
     add_line(view, std::array{corners[from], corners[to]}, color, 1);
+  }
+}
+
+void PointRaster::add_cameras(const Viewpoint& view, std::span<const Rigid3> T_world_camera, double spacing_px, double size_m, Rgb color) {
+  std::vector<Eigen::Vector2d> drawn;
+  for (const Rigid3& T : T_world_camera) {
+    const Eigen::Vector2d at = view.pixel_of(view.T_view_world * T.translation);
+    if (std::any_of(drawn.begin(), drawn.end(), [&](const Eigen::Vector2d& other) { return (other - at).norm() < spacing_px; })) continue;
+    drawn.push_back(at);
+    add_camera(view, T, size_m, color);
   }
 }
 

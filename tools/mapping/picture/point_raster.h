@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,7 +24,27 @@ struct Viewpoint {
   bool is_perspective = false;
   double px_per_m = 100;              ///< orthographic: pixels a metre; perspective: focal length in pixels
   double center_u = 0, center_v = 0;  ///< pixel of the optical axis
+
+  /// Of a point in view axes, in perspective before the eye.
+  [[nodiscard]] Eigen::Vector2d pixel_of(const Eigen::Vector3d& p_view) const {
+    return Eigen::Vector2d(center_u, center_v) + p_view.head<2>() * (is_perspective ? px_per_m / p_view.z() : px_per_m);
+  }
 };
+
+/// Between which coordinates something lies along an axis.
+struct Extent {
+  double low = 0, high = 0;
+  [[nodiscard]] double length() const { return std::max(0.1, high - low); }
+  [[nodiscard]] double middle() const { return 0.5 * (low + high); }
+};
+
+/// The parallel view with the given axes (rows: right, down, away) in which `u` and `v`, along the first two, fill the picture.
+[[nodiscard]] Viewpoint parallel_view(const Eigen::Matrix3d& axes, const Extent& u, const Extent& v, int width, int height, int margin_px);
+/// Unit vectors across `up` in steps of a degree over a quarter turn: walls run along one of them. The first is the world's own axis
+/// that lies flattest, so that a map with straight walls keeps its axes.
+[[nodiscard]] std::vector<Eigen::Vector3d> level_directions(const Eigen::Vector3d& up);
+/// `axis` or its opposite, so that its largest component is positive.
+[[nodiscard]] Eigen::Vector3d turned_positive(const Eigen::Vector3d& axis);
 
 /// Seen along -up: the whole of `points` (1st to 99th percentile) fits into width x height with a margin. To the right goes
 /// the direction in which walls run, the longer of the two. Points that are
@@ -50,6 +71,8 @@ class PointRaster {
   void add_line(const Viewpoint& view, std::span<const Eigen::Vector3d> line, Rgb color, double width_px);
   /// A camera as a small pyramid, drawn with lines.
   void add_camera(const Viewpoint& view, const Rigid3& T_world_camera, double size_m, Rgb color);
+  /// As many of them as stand `spacing_px` apart in the picture, the first come first.
+  void add_cameras(const Viewpoint& view, std::span<const Rigid3> T_world_camera, double spacing_px, double size_m, Rgb color);
   /// As in drawing.h.
   void add_text(int u, int v, const std::string& text, double height_px, Rgb color) {
     tools::draw_text(&image_, u, v, text, height_px, color);

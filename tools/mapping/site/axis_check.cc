@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/site/axis_check.h"
 
 #include <algorithm>
 #include <array>

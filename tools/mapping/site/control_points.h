@@ -123,4 +123,17 @@ struct ObservedPoint {
 /// In the order in which the names come first.
 [[nodiscard]] std::vector<ObservedPoint> average_measurements(const std::vector<PointMeasurement>& measurements);
 
+/// A control point known in the map and in a cloud: a line "name map_x map_y map_z cloud_x cloud_y cloud_z [sigma]" of a text file,
+/// metres, '#' comments.
+struct ControlPair {
+  std::string name;
+  Eigen::Vector3d p_map, p_cloud;
+  double sigma_m = 0.01;
+};
+
+/// Errors name file and line: a wrong number of fields, what is no finite number, a sigma that is not positive, a name used
+/// twice, fewer than three pairs.
+[[nodiscard]] Result<std::vector<ControlPair>> parse_point_pairs(std::string_view text, const std::string& path);
+[[nodiscard]] Result<std::vector<ControlPair>> read_point_pairs(const std::string& path);
+
 }  // namespace camloc::mapping

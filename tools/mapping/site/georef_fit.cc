@@ -10,7 +10,6 @@
 #include <map>
 
 #include "tools/common/text_format.h"
-#include "tools/mapping/site/axis_check.h"
 #include "tools/mapping/site/consensus.h"
 
 namespace camloc::mapping {

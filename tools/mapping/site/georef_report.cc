@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/site/georef_report.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "tools/common/json_text.h"
 #include "tools/common/text_format.h"
+#include "tools/mapping/site/georef_fit.h"
 
 namespace camloc::mapping {
 namespace {

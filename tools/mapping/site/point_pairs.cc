@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/site/point_pairs.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "core/io/file_bytes.h"
 #include "core/io/text.h"
+#include "tools/mapping/site/control_points.h"
 
 namespace camloc::mapping {
 namespace {
