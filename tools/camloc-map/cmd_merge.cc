@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // camloc-map merge: two maps of one building become one.
-#include <filesystem>
 #include <memory>
 
 #include "core/map/map_unpack.h"
@@ -39,10 +38,6 @@ Status merge_files(const MergeArguments& arguments, MergeSummary* summary) {
   summary->map_b = arguments.second;
   tools::TerminalObserver observer;
   const Status merged = merge_into(arguments.first, second, arguments.options, arguments.map_path, observer, summary);
-  if (merged.code() == ErrorCode::kUnavailable) {
-    const bool is_there = std::filesystem::exists(arguments.map_path);
-    return {ErrorCode::kIo, "interrupted; " + arguments.map_path + (is_there ? " is unchanged" : " was not written")};
-  }
   return merged.code() == ErrorCode::kInvalid ? merged.with_context(arguments.first + " and " + arguments.second) : merged;
 }
 

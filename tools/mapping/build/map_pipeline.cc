@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Two ways to a map. With poses (build_from_poses): every posed frame goes into the map builder. Without (build_from_recording): SLAM
-// finds the poses in a first pass that logs what it sees, the walk is placed in the site or turned upright, and a second pass over
+// finds the poses in a first pass that logs what it sees, the recording is placed in the site or turned upright, and a second pass over
 // the log feeds the builder. Both end in finish_map, which writes, or merges into the map that is extended.
 #include "tools/mapping/build/map_pipeline.h"
 
@@ -24,11 +24,6 @@ namespace camloc::mapping {
 namespace {
 
 constexpr std::uint32_t kMinSegmentKeyframes = 4;  // a shorter stretch is no sub-map
-
-Status interrupted_status(const std::string& map_path) {
-  const bool is_there = std::filesystem::exists(map_path);
-  return {ErrorCode::kIo, "interrupted; " + map_path + (is_there ? " is unchanged" : " was not written")};
-}
 
 std::string folder_name(const std::string& folder) { return std::filesystem::weakly_canonical(folder).filename().string().substr(0, 63); }
 
@@ -52,8 +47,7 @@ Status extend_map(const BuildRequest& request, const MapData& recorded, WorkObse
   summary->merge.emplace().map_b = request.frames.sequence;
   MapMergeOptions options;
   options.map.max_bytes = request.map.max_bytes;
-  const Status merged = merge_into(request.extend_path, recorded, options, request.map_path, observer, &*summary->merge);
-  return merged.code() == ErrorCode::kUnavailable ? interrupted_status(request.map_path) : merged;
+  return merge_into(request.extend_path, recorded, options, request.map_path, observer, &*summary->merge);
 }
 
 Status finish_map(const BuildRequest& request, const std::string& name, const std::string& path, const std::optional<WcsDatum>& datum,
@@ -105,7 +99,7 @@ Status build_from_poses(const BuildRequest& request, WorkObserver& observer, Bui
   summary->model_scale = frames->scale;
   MapBuilder builder(request.camera, recording_options(request));
   if (const Status added = add_frames(frames.value(), &builder, observer, summary); !added.is_ok()) return added;
-  if (observer.should_stop()) return interrupted_status(request.map_path);
+  if (observer.should_stop()) return interrupted(request.map_path);
   if (summary->reading.are_all_corrupt()) return tools::all_frames_corrupt(summary->reading);
   return finish_map(request, request.name.empty() ? folder_name(frames->folder) : request.name, request.map_path, std::nullopt, {},
                     &builder, observer, summary);
@@ -113,7 +107,7 @@ Status build_from_poses(const BuildRequest& request, WorkObserver& observer, Bui
 
 // --- SLAM finds the poses --------------------------------------------------------------------------------------------
 
-/// A walk on its way to a map.
+/// A recording on its way to a map.
 struct TrackedRecording {
   SelectedFrames frames;
   TrackingRequest pass;
@@ -124,71 +118,72 @@ struct TrackedRecording {
 };
 
 Result<TrackedRecording> prepare_recording(const BuildRequest& request) {
-  TrackedRecording walk;
+  TrackedRecording recording;
   const auto frames = find_frames(request.frames);
   if (!frames.is_ok()) return frames.status();
   if (!frames->has_depth) return Status(ErrorCode::kInvalid, request.frames.sequence + ": has no depth images; a map needs depth");
-  walk.frames = frames.value();
+  recording.frames = frames.value();
   SlamOptions slam = request.slam;
   slam.orb = request.map.orb;
   if (!request.survey.points_path.empty()) {
-    auto survey = read_survey(request.survey, walk.frames.folder, request.camera);
+    auto survey = read_survey(request.survey, recording.frames.folder, request.camera);
     if (!survey.is_ok()) return survey.status();
-    walk.survey = std::move(survey).value();
-    slam.required_keyframes = frames_of(*walk.survey);
+    recording.survey = std::move(survey).value();
+    slam.required_keyframes = frames_of(*recording.survey);
   }
-  walk.pass = {walk.frames.url,   walk.frames.num_selected, request.camera, request.map.orb, slam, frame_log_path(request.map_path),
-               request.is_resumed};
-  return walk;
+  recording.pass = {
+      recording.frames.url, recording.frames.num_selected, request.camera, request.map.orb, slam, frame_log_path(request.map_path),
+      request.is_resumed};
+  return recording;
 }
 
 /// The first pass, and everything that is known only after it: poses, refusals, weak spots.
-Status find_poses(const BuildRequest& request, Slam* slam, TrackedRecording* walk, WorkObserver& observer, BuildSummary* summary) {
+Status find_poses(const BuildRequest& request, Slam* slam, TrackedRecording* recording, WorkObserver& observer, BuildSummary* summary) {
   RecordingCheck check(request.camera);
-  auto end = track_recording(walk->pass, slam, &check, observer);
+  auto end = track_recording(recording->pass, slam, &check, observer);
   if (!end.is_ok()) return end.status();
-  walk->end = std::move(end).value();
-  // A map that is extended is not touched by half a walk.
-  if (walk->end.is_interrupted && !request.extend_path.empty()) return interrupted_status(request.map_path);
-  summary->is_partial = walk->end.is_interrupted;
-  summary->reading = walk->end.reading;
-  summary->num_without_depth = walk->end.num_without_depth;
-  walk->result = slam->finish([&](int iteration, double) {
+  recording->end = std::move(end).value();
+  // A map that is extended is not touched by half a recording.
+  if (recording->end.is_interrupted && !request.extend_path.empty()) return interrupted(request.map_path);
+  summary->is_partial = recording->end.is_interrupted;
+  summary->reading = recording->end.reading;
+  summary->num_without_depth = recording->end.num_without_depth;
+  recording->result = slam->finish([&](int iteration, double) {
     observer.show("adjusting all keyframes and landmarks, iteration " + std::to_string(iteration) + " ...", 0, 0, "");
     return true;
   });
-  Status usable = check.verdict(walk->result);
+  Status usable = check.verdict(recording->result);
   if (summary->reading.are_all_corrupt()) usable = tools::all_frames_corrupt(summary->reading);
-  if (usable.is_ok() && walk->result.segments.empty())
+  if (usable.is_ok() && recording->result.segments.empty())
     usable = {ErrorCode::kInvalid, request.frames.sequence + ": no frame shows enough texture with depth to begin a map"};
   if (!usable.is_ok()) {
-    if (walk->end.is_interrupted) return interrupted_status(request.map_path);  // too early to tell, --resume will
-    std::filesystem::remove(walk->pass.log_path);
+    if (recording->end.is_interrupted) return interrupted(request.map_path);  // too early to tell, --resume will
+    std::filesystem::remove(recording->pass.log_path);
     return usable;
   }
-  summary->slam =
-      SlamSummary{slam->counts(), walk->result.segments.front().fit, check.weak_spots(), check.num_stamp_jumps(), walk->end.num_resumed, "",
-                  std::nullopt};
+  summary->slam = SlamSummary{
+      slam->counts(), recording->result.segments.front().fit, check.weak_spots(), check.num_stamp_jumps(), recording->end.num_resumed, "",
+      std::nullopt};
   return Status::ok();
 }
 
 /// Site coordinates from control points; else z up, where something says which way that is.
-Status place_recording(const BuildRequest& request, Slam* slam, TrackedRecording* walk, BuildSummary* summary) {
-  if (walk->survey) {
+Status place_recording(const BuildRequest& request, Slam* slam, TrackedRecording* recording, BuildSummary* summary) {
+  if (recording->survey) {
     summary->survey = GeorefSummary{};
     summary->survey->map_path = summary->survey->out_path = request.map_path;
-    walk->datum = adjust_to_survey(request.survey, *walk->survey, request.camera, slam, &walk->result, &*summary->survey);
-    summary->survey->is_written = walk->datum.has_value();
-    summary->slam->fit = walk->result.segments.front().fit;
-    if (walk->datum) return Status::ok();
+    recording->datum = adjust_to_survey(request.survey, *recording->survey, request.camera, slam, &recording->result, &*summary->survey);
+    summary->survey->is_written = recording->datum.has_value();
+    summary->slam->fit = recording->result.segments.front().fit;
+    if (recording->datum) return Status::ok();
   }
   if (!request.is_levelled) return Status::ok();
-  const auto up = find_up(walk->result, walk->end.surfaces, walk->frames.folder, request.accelerometer_path);
+  const auto up = find_up(recording->result, recording->end.surfaces, recording->frames.folder, request.accelerometer_path);
   if (!up.is_ok()) {
     summary->slam->up_problem = up.status().message();
     return request.accelerometer_path.empty() ? Status::ok() : up.status();
   }
-  level(up->up_map, walk->result.segments.front().id, &walk->result);
+  level(up->up_map, recording->result.segments.front().id, &recording->result);
   summary->slam->up = up.value();
   return Status::ok();
 }
@@ -202,13 +197,13 @@ void measure_deformation(const Slam& slam, WorkObserver& observer, SlamResult* r
 }
 
 /// The second pass: what was seen, from where it was seen, becomes a map.
-Status map_segment(const BuildRequest& request, const TrackedRecording& walk, std::size_t number, WorkObserver& observer,
+Status map_segment(const BuildRequest& request, const TrackedRecording& recording, std::size_t number, WorkObserver& observer,
                    BuildSummary* summary) {
   std::unordered_map<std::uint64_t, const SlamPose*> pose_of_frame;
-  for (const SlamPose& pose : walk.result.poses) {
-    if (pose.segment == walk.result.segments[number].id) pose_of_frame.emplace(pose.frame, &pose);
+  for (const SlamPose& pose : recording.result.poses) {
+    if (pose.segment == recording.result.segments[number].id) pose_of_frame.emplace(pose.frame, &pose);
   }
-  auto log = FrameLogReader::open(walk.pass.log_path, recording_identity(walk.pass));
+  auto log = FrameLogReader::open(recording.pass.log_path, recording_identity(recording.pass));
   if (!log.is_ok()) return log.status();
   MapBuilder builder(request.camera, recording_options(request));
   LoggedFrame logged;
@@ -221,23 +216,23 @@ Status map_segment(const BuildRequest& request, const TrackedRecording& walk, st
     observer.show("mapping view", ++done, pose_of_frame.size(), landmarks_note(builder));
   }
   if (done < pose_of_frame.size()) {
-    return {ErrorCode::kCorrupt, walk.pass.log_path + ": holds " + std::to_string(done) + " of " + std::to_string(pose_of_frame.size()) +
-                                     " views; is another build of the same map running?"};
+    return {ErrorCode::kCorrupt, recording.pass.log_path + ": holds " + std::to_string(done) + " of " +
+                                     std::to_string(pose_of_frame.size()) + " views; is another build of the same map running?"};
   }
-  const std::string name = request.name.empty() ? folder_name(walk.frames.folder) : request.name;
-  return finish_map(request, name, segment_path(request.map_path, number), number == 0 ? walk.datum : std::nullopt,
-                    walk.result.segments[number].uncertainty, &builder, observer, summary);
+  const std::string name = request.name.empty() ? folder_name(recording.frames.folder) : request.name;
+  return finish_map(request, name, segment_path(request.map_path, number), number == 0 ? recording.datum : std::nullopt,
+                    recording.result.segments[number].uncertainty, &builder, observer, summary);
 }
 
 /// One map a segment, the largest at the path the user asked for. Returns an error only for that one.
-Status write_segments(const BuildRequest& request, const TrackedRecording& walk, WorkObserver& observer, BuildSummary* summary) {
-  for (std::size_t number = walk.result.segments.size(); number-- > 0;) {
-    const SlamResult::Segment& segment = walk.result.segments[number];
-    if (number == 0) return map_segment(request, walk, number, observer, summary);
+Status write_segments(const BuildRequest& request, const TrackedRecording& recording, WorkObserver& observer, BuildSummary* summary) {
+  for (std::size_t number = recording.result.segments.size(); number-- > 0;) {
+    const SlamResult::Segment& segment = recording.result.segments[number];
+    if (number == 0) return map_segment(request, recording, number, observer, summary);
     SubmapSummary submap{"", segment.num_keyframes, segment.num_views};
     if (segment.num_keyframes >= kMinSegmentKeyframes) {
       BuildSummary of_segment;
-      if (map_segment(request, walk, number, observer, &of_segment).is_ok()) submap.map_path = of_segment.map_path;
+      if (map_segment(request, recording, number, observer, &of_segment).is_ok()) submap.map_path = of_segment.map_path;
     }
     summary->submaps.push_back(submap);
   }
@@ -258,18 +253,18 @@ Status write_trajectory(const BuildRequest& request, const SlamResult& result, s
 Status build_from_recording(const BuildRequest& request, WorkObserver& observer, BuildSummary* summary) {
   auto prepared = prepare_recording(request);
   if (!prepared.is_ok()) return prepared.status();
-  TrackedRecording walk = std::move(prepared).value();
-  summary->num_recorded = walk.frames.num_recorded;
-  summary->num_selected = walk.frames.num_selected;
+  TrackedRecording recording = std::move(prepared).value();
+  summary->num_recorded = recording.frames.num_recorded;
+  summary->num_selected = recording.frames.num_selected;
   {
-    Slam slam(request.camera, walk.pass.slam);  // gone before the map takes its place in memory
-    if (const Status found = find_poses(request, &slam, &walk, observer, summary); !found.is_ok()) return found;
-    if (const Status placed = place_recording(request, &slam, &walk, summary); !placed.is_ok()) return placed;
-    measure_deformation(slam, observer, &walk.result);
+    Slam slam(request.camera, recording.pass.slam);  // gone before the map takes its place in memory
+    if (const Status found = find_poses(request, &slam, &recording, observer, summary); !found.is_ok()) return found;
+    if (const Status placed = place_recording(request, &slam, &recording, summary); !placed.is_ok()) return placed;
+    measure_deformation(slam, observer, &recording.result);
   }
-  if (const Status written = write_segments(request, walk, observer, summary); !written.is_ok()) return written;
-  if (const Status written = write_trajectory(request, walk.result, summary->slam->counts.num_views); !written.is_ok()) return written;
-  if (!summary->is_partial) std::filesystem::remove(walk.pass.log_path);
+  if (const Status written = write_segments(request, recording, observer, summary); !written.is_ok()) return written;
+  if (const Status written = write_trajectory(request, recording.result, summary->slam->counts.num_views); !written.is_ok()) return written;
+  if (!summary->is_partial) std::filesystem::remove(recording.pass.log_path);
   return Status::ok();
 }
 

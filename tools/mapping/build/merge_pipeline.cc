@@ -3,6 +3,7 @@
 #include "tools/mapping/build/merge_pipeline.h"
 
 #include <chrono>
+#include <filesystem>
 
 #include "core/map/map_writer.h"
 #include "tools/common/json_text.h"
@@ -12,6 +13,11 @@ namespace camloc::mapping {
 using tools::append_text;
 using tools::degrees;
 
+Status interrupted(const std::string& map_path) {
+  const bool is_there = std::filesystem::exists(map_path);
+  return {ErrorCode::kIo, "interrupted; " + map_path + (is_there ? " is unchanged" : " was not written")};
+}
+
 Status merge_into(const std::string& map_a, const MapData& b, const MapMergeOptions& options, const std::string& map_path,
                   WorkObserver& observer, MergeSummary* summary) {
   const auto start = std::chrono::steady_clock::now();
@@ -19,7 +25,7 @@ Status merge_into(const std::string& map_a, const MapData& b, const MapMergeOpti
   if (!a.is_ok()) return a.status();
   summary->map_a = map_a;
   const auto merged = merge_maps(a.value(), b, options, observer, &summary->report);
-  if (!merged.is_ok()) return merged.status();
+  if (!merged.is_ok()) return merged.status().code() == ErrorCode::kUnavailable ? interrupted(map_path) : merged.status();
   if (a.value().is_damaged()) return {ErrorCode::kCorrupt, map_a + ": could not be read to its end; was it changed meanwhile?"};
   if (const Status written = write_map(merged.value(), map_path); !written.is_ok()) return written;
   summary->map_path = map_path;

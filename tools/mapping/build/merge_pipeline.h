@@ -18,9 +18,12 @@ struct MergeSummary {
   double seconds = 0;
 };
 
+/// kIo: the user ended the work on the map at that path, which is as it was.
+[[nodiscard]] Status interrupted(const std::string& map_path);
+
 /// Merges `b` into the map at `map_a` and writes the result to `map_path`, which may be `map_a` itself: it is replaced by a
 /// complete map or stays as it is. Errors: those of MapView::open, merge_maps and
-/// write_map, kInvalid naming both maps when they do not fit, kUnavailable when `observer` said so.
+/// write_map, kInvalid when the maps do not fit, interrupted() when `observer` said so.
 [[nodiscard]] Status merge_into(const std::string& map_a, const MapData& b, const MapMergeOptions& options, const std::string& map_path,
                                 WorkObserver& observer, MergeSummary* summary);
 

@@ -68,8 +68,7 @@ std::string url_of(const std::string& folder, const std::vector<std::uint64_t>& 
   return "replay://" + folder + "?frames=" + slices_of(frames);
 }
 
-struct Selection {
-  std::string folder;
+struct Selection : SelectedFrames {
   Sequence sequence;
   std::vector<std::size_t> frames;  ///< indices in the sequence, ascending
 };
@@ -81,27 +80,24 @@ Result<Selection> select(const PosedFramesRequest& request) {
   if (!sequence.is_ok()) return sequence.status();
   auto frames = select_frames(request.include, request.exclude, sequence->frames.size());
   if (!frames.is_ok()) return frames.status();
-  return Selection{folder.value(), std::move(sequence).value(), std::move(frames).value()};
+  Selection result{{*folder, "", sequence->frames.size(), frames->size()}, std::move(sequence).value(), std::move(frames).value()};
+  for (const SequenceFrame& frame : result.sequence.frames) result.has_depth = result.has_depth || !frame.depth_path.empty();
+  return result;
 }
 
 }  // namespace
 
 Result<SelectedFrames> find_frames(const PosedFramesRequest& request) {
-  const auto selection = select(request);
+  auto selection = select(request);
   if (!selection.is_ok()) return selection.status();
-  SelectedFrames result;
-  result.folder = selection->folder;
-  result.num_recorded = selection->sequence.frames.size();
-  result.num_selected = selection->frames.size();
-  for (const SequenceFrame& frame : selection->sequence.frames) result.has_depth = result.has_depth || !frame.depth_path.empty();
-  result.url = url_of(selection->folder, {selection->frames.begin(), selection->frames.end()});
-  return result;
+  selection->url = url_of(selection->folder, {selection->frames.begin(), selection->frames.end()});
+  return SelectedFrames(*selection);
 }
 
 Result<PosedFrames> find_posed_frames(const PosedFramesRequest& request, const RgbdCamera& camera) {
   const auto selection = select(request);
   if (!selection.is_ok()) return selection.status();
-  PosedFrames result;
+  PosedFrames result{*selection};
   const auto poses = recorded_poses(request, selection->sequence, camera, &result.scale);
   if (!poses.is_ok()) return poses.status();
 
@@ -109,9 +105,6 @@ Result<PosedFrames> find_posed_frames(const PosedFramesRequest& request, const R
   const bool are_of_depth = request.pose_camera == PoseCamera::kDepth ||
                             (request.pose_camera == PoseCamera::kAuto && are_embedded && camera.poses_are_of_depth_camera);
   const Rigid3 T_recorded_color = are_of_depth ? camera.T_color_depth.inverse() : Rigid3{};
-  result.folder = selection->folder;
-  result.num_recorded = selection->sequence.frames.size();
-  result.num_selected = selection->frames.size();
   for (const std::size_t index : selection->frames) {
     if (const auto& T_map_recorded = poses.value()[index]) {
       result.T_map_camera_of_frame.emplace(index, *T_map_recorded * T_recorded_color);

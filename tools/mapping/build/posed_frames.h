@@ -36,11 +36,10 @@ struct SelectedFrames {
 /// Reads `sequence`, `include` and `exclude` of the request only.
 [[nodiscard]] Result<SelectedFrames> find_frames(const PosedFramesRequest& request);
 
-struct PosedFrames {
-  std::string folder;
-  std::string url;                                        ///< for open_frame_source: only frames with a pose
+/// Those of them that have a pose; `url` has only these.
+struct PosedFrames : SelectedFrames {
   std::map<std::uint64_t, Rigid3> T_map_camera_of_frame;  ///< by index in the whole recording
-  std::uint64_t num_recorded = 0, num_selected = 0, num_without_pose = 0;
+  std::uint64_t num_without_pose = 0;
   std::optional<ModelScale> scale;  ///< how a COLMAP model was brought to metres
 };
 

@@ -6,7 +6,6 @@
 #include "tools/mapping/build/recording_check.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "tools/common/text_format.h"
 
@@ -35,12 +34,22 @@ bool is_constant(ImageView<std::uint16_t> depth, std::uint16_t* value) {
   return low <= high && high - low <= 1;
 }
 
-const char* advice_for(const char* what) {
-  if (std::strcmp(what, "lost") == 0) return "walk there again, slower, with the camera at what is known already";
-  if (std::strcmp(what, "time jump") == 0) return "frames are missing; record without gaps";
-  if (std::strcmp(what, "little depth") == 0) return "keep 0.5 to 4 m away from surfaces; glass, black and sunlit ones give none";
-  if (std::strcmp(what, "little texture") == 0) return "point the camera at furniture, posters, corners instead of bare walls";
-  return "something moved or covered the view, or the camera was too fast: scan there again";
+struct Weakness {
+  const char *what, *advice;
+};
+constexpr Weakness kTimeJump{"time jump", "frames are missing; record without gaps"},
+    kLittleTexture{"little texture", "point the camera at furniture, posters, corners instead of bare walls"},
+    kLittleDepth{"little depth", "keep 0.5 to 4 m away from surfaces; glass, black and sunlit ones give none"},
+    kLost{"lost", "walk there again, slower, with the camera at what is known already"},
+    kFewLandmarks{"few landmarks found again", "something moved or covered the view, or the camera was too fast: scan there again"};
+
+/// Nothing where the frame is a good one.
+const Weakness* weakness_of(const RecordingCheck::Note& note) {
+  if (note.is_jump) return &kTimeJump;
+  if (note.num_features < kMinFeatures) return &kLittleTexture;
+  if (note.num_with_depth < kMinWithDepth) return &kLittleDepth;
+  if (note.is_lost) return &kLost;
+  return note.num_inliers < kMinInliers ? &kFewLandmarks : nullptr;
 }
 
 }  // namespace
@@ -100,25 +109,16 @@ Status RecordingCheck::verdict(const SlamResult& result) const {
                          100 * moved_m, tools::degrees(turned_rad), result.poses.size())};
 }
 
-const char* RecordingCheck::weakness_of(const Note& note) const {
-  if (note.is_jump) return "time jump";
-  if (note.num_features < kMinFeatures) return "little texture";
-  if (note.num_with_depth < kMinWithDepth) return "little depth";
-  if (note.is_lost) return "lost";
-  if (note.num_inliers < kMinInliers) return "few landmarks found again";
-  return nullptr;
-}
-
 std::vector<WeakSpot> RecordingCheck::weak_spots() const {
   std::vector<WeakSpot> spots;
   std::uint64_t last = 0;  // position in notes_ of the last weak frame
   for (std::uint64_t i = 0; i < notes_.size(); ++i) {
-    const char* what = weakness_of(notes_[i]);
-    if (what == nullptr) continue;
-    if (!spots.empty() && spots.back().what == what && i - last <= kMaxHole) {
+    const Weakness* weakness = weakness_of(notes_[i]);
+    if (weakness == nullptr) continue;
+    if (!spots.empty() && spots.back().what == weakness->what && i - last <= kMaxHole) {
       spots.back().last_frame = notes_[i].frame;
     } else {
-      spots.push_back({notes_[i].frame, notes_[i].frame, what, advice_for(what)});
+      spots.push_back({notes_[i].frame, notes_[i].frame, weakness->what, weakness->advice});
     }
     last = i;
   }

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What is wrong with a walk, and where: recordings that cannot become a map are refused with a reason, weak spots of the others
+// What is wrong with a recording, and where: recordings that cannot become a map are refused with a reason, weak spots of the others
 // are named together with what to do about them.
 #pragma once
 
@@ -25,6 +25,14 @@ struct WeakSpot {
 
 class RecordingCheck {
  public:
+  /// What is remembered of a frame.
+  struct Note {
+    std::uint64_t frame = 0;
+    bool is_lost = false, is_jump = false;
+    int num_inliers = 0;
+    std::size_t num_features = 0, num_with_depth = 0;
+  };
+
   explicit RecordingCheck(const RgbdCamera& camera) : camera_(camera) {}
 
   /// Before tracking: depth missing, constant, in the wrong unit. `num_with_depth` features of `num_features` have depth.
@@ -42,14 +50,6 @@ class RecordingCheck {
   [[nodiscard]] std::uint64_t num_stamp_jumps() const { return num_jumps_; }
 
  private:
-  struct Note {
-    std::uint64_t frame = 0;
-    bool is_lost = false, is_jump = false;
-    int num_inliers = 0;
-    std::size_t num_features = 0, num_with_depth = 0;
-  };
-  [[nodiscard]] const char* weakness_of(const Note& note) const;
-
   RgbdCamera camera_;
   std::vector<Note> notes_;
   std::int64_t last_stamp_ns_ = 0;

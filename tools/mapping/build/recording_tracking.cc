@@ -14,7 +14,6 @@
 #include "core/io/camera_file.h"
 #include "drivers/sources.h"
 #include "tools/mapping/build/frame_log.h"
-#include "tools/mapping/build/surface_sample.h"
 
 namespace camloc::mapping {
 namespace {
@@ -27,7 +26,7 @@ std::string note_of(const SlamCounts& counts) {
   return note;
 }
 
-/// One walk on its way through extraction, tracking and the log.
+/// A recording on its way through extraction, tracking and the log.
 class Pass {
  public:
   Pass(const TrackingRequest& request, Slam* slam, RecordingCheck* check, WorkObserver& observer)
@@ -39,7 +38,7 @@ class Pass {
         thumbnails_(request.camera) {}
 
   /// Processes what an earlier pass has seen; says where its log ends.
-  Status replay(std::uint64_t* log_bytes) {
+  Result<std::uint64_t> replay() {
     auto reader = FrameLogReader::open(request_.log_path, recording_identity(request_));
     if (!reader.is_ok()) return reader.status();
     LoggedFrame logged;
@@ -49,9 +48,8 @@ class Pass {
       last_frame_ = logged.frame;
       ++end_.num_resumed;
     }
-    *log_bytes = reader->size_bytes();
     end_.is_interrupted = observer_.should_stop();
-    return Status::ok();
+    return reader->size_bytes();
   }
 
   Status run(FrameLogWriter log) {
@@ -114,6 +112,21 @@ class Pass {
 
 }  // namespace
 
+std::vector<Eigen::Vector3f> sample_surface(const RgbdCamera& camera, ImageView<std::uint16_t> depth) {
+  constexpr int kColumns = 20, kRows = 15;
+  std::vector<Eigen::Vector3f> points;
+  for (int row = 0; row < kRows; ++row) {
+    for (int column = 0; column < kColumns; ++column) {
+      const int x = (2 * column + 1) * depth.width / (2 * kColumns), y = (2 * row + 1) * depth.height / (2 * kRows);
+      const double z = camera.depth_m(depth.at(x, y));
+      if (z <= 0) continue;
+      const Eigen::Vector2d ray = camera.depth.undistort({x, y});
+      points.push_back((camera.T_color_depth * Eigen::Vector3d(z * ray.x(), z * ray.y(), z)).cast<float>());
+    }
+  }
+  return points;
+}
+
 std::uint64_t recording_identity(const TrackingRequest& request) {
   const std::string text = request.url + "\n" + format_camera_toml(request.camera) + "\n" + std::to_string(request.orb.num_features);
   return XXH3_64bits(text.data(), text.size());
@@ -121,12 +134,10 @@ std::uint64_t recording_identity(const TrackingRequest& request) {
 
 Result<RecordingEnd> track_recording(const TrackingRequest& request, Slam* slam, RecordingCheck* check, WorkObserver& observer) {
   Pass pass(request, slam, check, observer);
-  std::uint64_t log_bytes = 0;
-  if (request.is_resumed) {
-    if (const Status replayed = pass.replay(&log_bytes); !replayed.is_ok()) return replayed;
-    if (pass.is_interrupted()) return pass.end();  // the rest of the log is for the next time
-  }
-  auto log = request.is_resumed ? FrameLogWriter::append(request.log_path, log_bytes)
+  const Result<std::uint64_t> log_bytes = request.is_resumed ? pass.replay() : 0;
+  if (!log_bytes.is_ok()) return log_bytes.status();
+  if (pass.is_interrupted()) return pass.end();  // the rest of the log is for the next time
+  auto log = request.is_resumed ? FrameLogWriter::append(request.log_path, *log_bytes)
                                 : FrameLogWriter::create(request.log_path, recording_identity(request));
   if (!log.is_ok()) return log.status();
   if (const Status done = pass.run(std::move(log).value()); !done.is_ok()) {

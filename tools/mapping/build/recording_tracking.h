@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The first pass over a walk without poses: every frame becomes a view, SLAM says where it was, the view log keeps what was
-// seen. An interrupted pass goes on from its log.
+// The first pass over a recording without poses: SLAM says where each frame was, the frame log keeps what was seen. An interrupted pass
+// goes on from its log.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct TrackingRequest {
   RgbdCamera camera;
   OrbOptions orb;
   SlamOptions slam;
-  std::string log_path;     ///< of the view log
+  std::string log_path;     ///< of the frame log
   bool is_resumed = false;  ///< go on from the log
 };
 
@@ -42,6 +42,10 @@ struct RecordingEnd {
   tools::FrameCounts reading;           ///< of this pass, without what came from the log
   std::uint64_t num_without_depth = 0;  ///< colour images without a depth image
 };
+
+/// A coarse look at the surfaces in a depth image, for finding the floor: points in the colour camera's frame, metres, on a grid of
+/// 20 x 15 over the image, where there is depth.
+[[nodiscard]] std::vector<Eigen::Vector3f> sample_surface(const RgbdCamera& camera, ImageView<std::uint16_t> depth);
 
 /// What makes a log belong to a build.
 [[nodiscard]] std::uint64_t recording_identity(const TrackingRequest& request);

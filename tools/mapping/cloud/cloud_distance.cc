@@ -37,13 +37,6 @@ Box box_of(const Points& points) {
   return box;
 }
 
-std::vector<Eigen::Vector3f> to_float(std::span<const Eigen::Vector3d> points) {
-  std::vector<Eigen::Vector3f> result;
-  result.reserve(points.size());
-  for (const Eigen::Vector3d& p : points) result.push_back(p.cast<float>());
-  return result;
-}
-
 void measure_landmarks(std::span<const Eigen::Vector3d> landmarks_m, CloudIndex* cloud, double max_distance_m, CloudDistances* result) {
   std::vector<float> near_m, plane_m;
   for (const Eigen::Vector3d& p : landmarks_m) {
@@ -67,9 +60,7 @@ void measure_landmarks(std::span<const Eigen::Vector3d> landmarks_m, CloudIndex*
 
 void measure_coverage(std::span<const Eigen::Vector3d> landmarks_m, std::span<const Eigen::Vector3d> keyframes_m, const CloudIndex& cloud,
                       const Box& map_box, CloudDistances* result) {
-  CloudAccumulator accumulator({kCellM, 1, 1});
-  for (const Eigen::Vector3f& p : cloud.points_m()) accumulator.add(p.cast<double>());
-  const PointCloud cells = accumulator.finish();
+  const PointCloud cells = thinned(cloud.points_m(), kCellM);
   const std::vector<Eigen::Vector3f> landmarks = to_float(landmarks_m), keyframes = to_float(keyframes_m);
   const CloudIndex landmark_index(landmarks), keyframe_index(keyframes);
   std::vector<float> distances_m;

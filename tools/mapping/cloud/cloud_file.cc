@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tools/mapping/cloud/cloud_formats.h"
+#include "core/io/text.h"
 
 namespace camloc::mapping {
 namespace {
@@ -18,8 +18,6 @@ namespace {
 struct Reader {
   Status (*read)(CloudInput*, CloudAccumulator*);
 };
-
-constexpr const char* kKnownKinds = "PLY, PCD, LAS and text tables (XYZ, PTS, CSV) are read";
 
 std::string extension_of(const std::string& name) {
   std::string extension = std::filesystem::path(name).extension().string();
@@ -49,7 +47,8 @@ Result<Reader> choose_reader(CloudInput* input) {
   if (start.starts_with("ply\n") || start.starts_with("ply\r")) return Reader{read_ply};
   if (start.starts_with("# .PCD") || start.starts_with("VERSION") || extension == ".pcd") return Reader{read_pcd};
   if (is_text(start) && extension != ".ply" && extension != ".las") return Reader{read_text_cloud};
-  return input->error(ErrorCode::kUnsupported, "is no kind of point cloud that is known here; " + std::string(kKnownKinds));
+  return input->error(ErrorCode::kUnsupported,
+                      "is no kind of point cloud that is known here; PLY, PCD, LAS and text tables (XYZ, PTS, CSV) are read");
 }
 
 template <typename T>
@@ -63,19 +62,8 @@ double load(const std::byte* bytes, bool is_swapped) {
 }  // namespace
 
 std::size_t scalar_bytes(ScalarType type) {
-  switch (type) {
-    case ScalarType::kInt8:
-    case ScalarType::kUint8: return 1;
-    case ScalarType::kInt16:
-    case ScalarType::kUint16: return 2;
-    case ScalarType::kInt32:
-    case ScalarType::kUint32:
-    case ScalarType::kFloat32: return 4;
-    case ScalarType::kInt64:
-    case ScalarType::kUint64:
-    case ScalarType::kFloat64: return 8;
-  }
-  return 0;
+  constexpr std::size_t kBytes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
+  return kBytes[static_cast<std::size_t>(type)];
 }
 
 double read_scalar(ScalarType type, const std::byte* bytes, bool is_big_endian) {
@@ -95,12 +83,22 @@ double read_scalar(ScalarType type, const std::byte* bytes, bool is_big_endian) 
   return 0;
 }
 
+std::optional<Eigen::Vector3d> parse_point(const std::vector<std::string_view>& fields, const std::array<std::size_t, 3>& columns) {
+  Eigen::Vector3d p;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto value = columns[axis] < fields.size() ? parse_double(fields[columns[axis]]) : std::nullopt;
+    if (!value) return std::nullopt;
+    p[static_cast<Eigen::Index>(axis)] = *value;
+  }
+  return p;
+}
+
 Result<PointCloud> read_cloud(std::istream& stream, const std::string& name, const CloudOptions& options, WorkObserver& observer) {
   CloudInput input(stream, name, observer);
   const auto reader = choose_reader(&input);
   if (!reader.is_ok()) return reader.status();
   CloudAccumulator accumulator(options);
-  const Status read = reader.value().read(&input, &accumulator);
+  const Status read = reader->read(&input, &accumulator);
   if (input.is_stopped()) return input.truncated("");
   if (!read.is_ok()) return read;
   PointCloud cloud = accumulator.finish();

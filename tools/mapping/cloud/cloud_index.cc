@@ -65,8 +65,6 @@ struct CloudIndex::Impl {
 
 CloudIndex::CloudIndex(std::span<const Eigen::Vector3f> points_m) : impl_(std::make_unique<Impl>(points_m)) {}
 CloudIndex::~CloudIndex() = default;
-CloudIndex::CloudIndex(CloudIndex&&) noexcept = default;
-CloudIndex& CloudIndex::operator=(CloudIndex&&) noexcept = default;
 
 std::span<const Eigen::Vector3f> CloudIndex::points_m() const { return impl_->adaptor.points; }
 

@@ -19,8 +19,6 @@ class CloudIndex {
  public:
   explicit CloudIndex(std::span<const Eigen::Vector3f> points_m);
   ~CloudIndex();
-  CloudIndex(CloudIndex&&) noexcept;
-  CloudIndex& operator=(CloudIndex&&) noexcept;
 
   struct Neighbor {
     std::uint32_t index = 0;

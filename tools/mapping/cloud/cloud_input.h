@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Bytes of a cloud file one after the other through a buffer: a scan may be larger than the memory.
+// Bytes of a cloud file one after the other through a buffer: a scan may be larger than the memory. And the readers behind
+// cloud_file.h, one a file format.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <istream>
@@ -16,6 +18,7 @@
 
 #include "core/base/result.h"
 #include "core/base/work_observer.h"
+#include "tools/mapping/cloud/point_cloud.h"
 
 namespace camloc::mapping {
 
@@ -59,5 +62,38 @@ class CloudInput {
   std::size_t next_ = 0, end_ = 0;
   bool is_stopped_ = false;
 };
+
+/// A number type of PLY and PCD.
+enum class ScalarType : std::uint8_t { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kInt64, kUint64, kFloat32, kFloat64 };
+[[nodiscard]] std::size_t scalar_bytes(ScalarType type);
+/// `bytes` holds scalar_bytes(type) bytes.
+[[nodiscard]] double read_scalar(ScalarType type, const std::byte* bytes, bool is_big_endian = false);
+
+/// Where x, y and z are in a binary record.
+struct RecordAxes {
+  std::array<ScalarType, 3> type{};
+  std::array<std::size_t, 3> byte{};
+  bool is_big_endian = false;
+  [[nodiscard]] Eigen::Vector3d point(const std::byte* record) const {
+    const auto at = [&](std::size_t axis) { return read_scalar(type[axis], record + byte[axis], is_big_endian); };
+    return {at(0), at(1), at(2)};
+  }
+};
+/// x, y and z from these columns of a line; nothing where one is missing or no number.
+[[nodiscard]] std::optional<Eigen::Vector3d> parse_point(const std::vector<std::string_view>& fields,
+                                                         const std::array<std::size_t, 3>& columns);
+
+// Each reader takes the whole input from its first byte and adds the points; every count and size of a header is compared with the
+// bytes that are there before it is believed.
+
+/// PLY 1.0, ascii, binary little and big endian: x, y, z of the element "vertex"; other properties and elements are skipped.
+[[nodiscard]] Status read_ply(CloudInput* input, CloudAccumulator* cloud);
+/// PCD 0.7 (Point Cloud Library): ascii, binary, binary_compressed; fields x, y, z of any type.
+[[nodiscard]] Status read_pcd(CloudInput* input, CloudAccumulator* cloud);
+/// LAS 1.0 to 1.4, point formats 0 to 10, uncompressed. Points marked as withheld are counted as invalid.
+[[nodiscard]] Status read_las(CloudInput* input, CloudAccumulator* cloud);
+/// A point a line: x, y, z and what else there is, separated by blanks, commas or semicolons (with semicolons a comma may be the
+/// decimal sign). Comments with #, // or %; a header line may name the columns; PTS files start with the number of points.
+[[nodiscard]] Status read_text_cloud(CloudInput* input, CloudAccumulator* cloud);
 
 }  // namespace camloc::mapping

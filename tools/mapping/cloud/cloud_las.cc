@@ -5,7 +5,7 @@
 #include <array>
 
 #include "core/base/checked.h"
-#include "tools/mapping/cloud/cloud_formats.h"
+#include "tools/mapping/cloud/cloud_input.h"
 
 namespace camloc::mapping {
 namespace {
@@ -22,7 +22,12 @@ struct Header {
 
 template <typename T>
 T number_at(std::span<const std::byte> bytes, std::size_t offset, ScalarType type) {
-  return static_cast<T>(read_scalar(type, bytes.data() + offset, false));
+  return static_cast<T>(read_scalar(type, bytes.data() + offset));
+}
+
+Eigen::Vector3d vector_at(std::span<const std::byte> bytes, std::size_t offset) {
+  const RecordAxes axes{{ScalarType::kFloat64, ScalarType::kFloat64, ScalarType::kFloat64}, {0, 8, 16}};
+  return axes.point(bytes.data() + offset);
 }
 
 Result<Header> parse_header(const CloudInput& input, std::span<const std::byte> bytes) {
@@ -44,13 +49,11 @@ Result<Header> parse_header(const CloudInput& input, std::span<const std::byte> 
   header.points_offset = number_at<std::uint64_t>(bytes, 96, ScalarType::kUint32);
   header.num_points = number_at<std::uint64_t>(bytes, 107, ScalarType::kUint32);
   if (minor == 4 && bytes.size() >= kHeaderBytes14) {
-    const double num_points = read_scalar(ScalarType::kUint64, bytes.data() + 247, false);
+    const double num_points = read_scalar(ScalarType::kUint64, bytes.data() + 247);
     if (num_points > 0 && num_points < 1e18) header.num_points = static_cast<std::uint64_t>(num_points);
   }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    header.scale[static_cast<Eigen::Index>(axis)] = read_scalar(ScalarType::kFloat64, bytes.data() + 131 + 8 * axis, false);
-    header.offset[static_cast<Eigen::Index>(axis)] = read_scalar(ScalarType::kFloat64, bytes.data() + 155 + 8 * axis, false);
-  }
+  header.scale = vector_at(bytes, 131);
+  header.offset = vector_at(bytes, 155);
   return header;
 }
 
@@ -86,6 +89,7 @@ Status read_las(CloudInput* input, CloudAccumulator* cloud) {
   const Header& h = header.value();
   if (const Status checked = check(*input, h); !checked.is_ok()) return checked;
   if (!input->skip(h.points_offset)) return input->truncated("the points are missing");
+  const RecordAxes axes{{ScalarType::kInt32, ScalarType::kInt32, ScalarType::kInt32}, {0, 4, 8}};
   for (std::uint64_t i = 0; i < h.num_points; ++i) {
     const auto record = input->read(h.record_bytes);
     if (record.empty()) return input->truncated("it ends at point " + std::to_string(i) + " of " + std::to_string(h.num_points));
@@ -93,10 +97,7 @@ Status read_las(CloudInput* input, CloudAccumulator* cloud) {
       cloud->add_invalid();
       continue;
     }
-    Eigen::Vector3d raw;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      raw[static_cast<Eigen::Index>(axis)] = read_scalar(ScalarType::kInt32, record.data() + 4 * axis, false);
-    cloud->add(raw.cwiseProduct(h.scale) + h.offset);
+    cloud->add(axes.point(record.data()).cwiseProduct(h.scale) + h.offset);
   }
   return Status::ok();
 }

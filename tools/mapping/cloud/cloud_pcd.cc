@@ -10,7 +10,7 @@
 
 #include "core/base/checked.h"
 #include "core/io/text.h"
-#include "tools/mapping/cloud/cloud_formats.h"
+#include "tools/mapping/cloud/cloud_input.h"
 
 namespace camloc::mapping {
 namespace {
@@ -35,10 +35,10 @@ struct Header {
   Encoding encoding = Encoding::kAscii;
 };
 
-/// Where x, y and z are: bytes into a record, columns of a line, and their types.
+/// Where x, y and z are: among the fields, in a record, and among the columns of a line.
 struct Axes {
-  std::array<std::size_t, 3> field{}, byte{}, column{};
-  std::array<ScalarType, 3> type{};
+  std::array<std::size_t, 3> field{}, column{};
+  RecordAxes record;
 };
 
 std::optional<ScalarType> type_of(const Field& field) {
@@ -114,7 +114,7 @@ std::optional<Axes> find_axes(const std::vector<Field>& fields) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const auto type = type_of(fields[i]);
       if (fields[i].name != kNames[axis] || !type) continue;
-      axes.field[axis] = i, axes.byte[axis] = byte, axes.column[axis] = column, axes.type[axis] = *type;
+      axes.field[axis] = i, axes.record.byte[axis] = byte, axes.column[axis] = column, axes.record.type[axis] = *type;
       ++num_found;
     }
     byte += fields[i].bytes();
@@ -133,14 +133,9 @@ Status read_ascii(CloudInput* input, const Header& header, const Axes& axes, Clo
     if (!line) return cut_off(*input, header, i);
     const auto fields = split_fields(*line, " \t");
     if (fields.empty()) continue;
-    Eigen::Vector3d p;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto value = axes.column[axis] < fields.size() ? parse_double(fields[axes.column[axis]]) : std::nullopt;
-      if (!value)
-        return input->error(ErrorCode::kCorrupt, "point " + std::to_string(i) + " is no line of numbers: " + in_quotes(trimmed(*line)));
-      p[static_cast<Eigen::Index>(axis)] = *value;
-    }
-    cloud->add(p);
+    const auto p = parse_point(fields, axes.column);
+    if (!p) return input->error(ErrorCode::kCorrupt, "point " + std::to_string(i) + " is no line of numbers: " + in_quotes(trimmed(*line)));
+    cloud->add(*p);
     ++i;
   }
   return Status::ok();
@@ -152,11 +147,7 @@ Status read_binary(CloudInput* input, const Header& header, const Axes& axes, st
   for (std::uint64_t i = 0; i < header.num_points; ++i) {
     const auto record = input->read(record_bytes);
     if (record.empty()) return cut_off(*input, header, i);
-    Eigen::Vector3d p;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      p[static_cast<Eigen::Index>(axis)] = read_scalar(axes.type[axis], record.data() + axes.byte[axis], false);
-    }
-    cloud->add(p);
+    cloud->add(axes.record.point(record.data()));
   }
   return Status::ok();
 }
@@ -189,8 +180,8 @@ bool unpack_lzf(std::span<const std::byte> packed, std::span<std::byte> unpacked
 Status read_compressed(CloudInput* input, const Header& header, const Axes& axes, std::size_t record_bytes, CloudAccumulator* cloud) {
   const auto sizes = input->read(8);
   if (sizes.empty()) return input->truncated("the sizes of the compressed data are missing");
-  const auto packed_bytes = static_cast<std::uint64_t>(read_scalar(ScalarType::kUint32, sizes.data(), false));
-  const auto unpacked_bytes = static_cast<std::uint64_t>(read_scalar(ScalarType::kUint32, sizes.data() + 4, false));
+  const auto packed_bytes = static_cast<std::uint64_t>(read_scalar(ScalarType::kUint32, sizes.data()));
+  const auto unpacked_bytes = static_cast<std::uint64_t>(read_scalar(ScalarType::kUint32, sizes.data() + 4));
   if (packed_bytes > input->remaining()) return input->truncated("the compressed data are shorter than they say");
   if (checked_multiply(header.num_points, record_bytes) != unpacked_bytes || unpacked_bytes > kMaxLzfExpansion * packed_bytes ||
       unpacked_bytes > kMaxUnpackedBytes) {
@@ -206,13 +197,11 @@ Status read_compressed(CloudInput* input, const Header& header, const Axes& axes
   }
   if (!unpack_lzf(packed, unpacked)) return input->error(ErrorCode::kCorrupt, "the compressed data are damaged");
   // Field by field: the column of a field begins after those of the fields before it.
+  RecordAxes at = axes.record;
+  for (std::size_t axis = 0; axis < 3; ++axis) at.byte[axis] *= header.num_points;
   for (std::uint64_t i = 0; i < header.num_points; ++i) {
-    Eigen::Vector3d p;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::uint64_t at = header.num_points * axes.byte[axis] + i * header.fields[axes.field[axis]].bytes();
-      p[static_cast<Eigen::Index>(axis)] = read_scalar(axes.type[axis], unpacked.data() + at, false);
-    }
-    cloud->add(p);
+    cloud->add(at.point(unpacked.data()));
+    for (std::size_t axis = 0; axis < 3; ++axis) at.byte[axis] += header.fields[axes.field[axis]].bytes();
   }
   return Status::ok();
 }

@@ -9,7 +9,7 @@
 
 #include "core/base/checked.h"
 #include "core/io/text.h"
-#include "tools/mapping/cloud/cloud_formats.h"
+#include "tools/mapping/cloud/cloud_input.h"
 
 namespace camloc::mapping {
 namespace {
@@ -146,19 +146,17 @@ bool read_binary_element(CloudInput* input, const Element& element, bool is_big_
 /// Elements whose properties all have a fixed size, the usual case: a record at a time.
 Status read_binary_records(CloudInput* input, const Element& element, bool is_big_endian, const std::array<std::size_t, 3>& axes,
                            CloudAccumulator* cloud) {
-  std::array<std::size_t, 3> offsets{};
+  RecordAxes at;
+  at.is_big_endian = is_big_endian;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < axes[axis]; ++i) offsets[axis] += scalar_bytes(element.properties[i].type);
+    at.type[axis] = element.properties[axes[axis]].type;
+    for (std::size_t i = 0; i < axes[axis]; ++i) at.byte[axis] += scalar_bytes(element.properties[i].type);
   }
   const std::size_t record_bytes = element.min_bytes();
   for (std::uint64_t i = 0; i < element.count; ++i) {
     const auto record = input->read(record_bytes);
     if (record.empty()) return cut_off(*input, element, i);
-    Eigen::Vector3d p;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      p[static_cast<Eigen::Index>(axis)] = read_scalar(element.properties[axes[axis]].type, record.data() + offsets[axis], is_big_endian);
-    }
-    cloud->add(p);
+    cloud->add(at.point(record.data()));
   }
   return Status::ok();
 }

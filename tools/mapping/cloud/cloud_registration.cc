@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "core/base/order_statistics.h"
+#include "tools/mapping/cloud/point_cloud.h"
 
 namespace camloc::mapping {
 namespace {
@@ -60,14 +61,6 @@ Equations build_equations(const std::vector<Correspondence>& pairs, CloudIndex* 
     equations.sum_weights += weight;
   }
   return equations;
-}
-
-/// Chosen evenly, at most `max_points`.
-std::vector<Eigen::Vector3d> choose(std::span<const Eigen::Vector3d> points, std::size_t max_points) {
-  std::vector<Eigen::Vector3d> chosen;
-  const std::size_t count = std::min(points.size(), max_points);
-  for (std::size_t i = 0; i < count; ++i) chosen.push_back(points[i * points.size() / count]);
-  return chosen;
 }
 
 std::vector<Correspondence> find_correspondences(const std::vector<Eigen::Vector3d>& points_map, const CloudIndex& cloud,
@@ -127,7 +120,7 @@ void describe(const Equations& equations, bool has_scale, std::size_t num_pairs,
 
 Result<Registration> register_points(std::span<const Eigen::Vector3d> points_map, CloudIndex* cloud, const Similarity3& start,
                                      const RegistrationOptions& options) {
-  const std::vector<Eigen::Vector3d> points = choose(points_map, options.max_points);
+  const std::vector<Eigen::Vector3d> points = chosen_evenly(points_map, options.max_points);
   Registration result;
   result.T_cloud_map = start;
   result.num_points = points.size();

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/io/text.h"
-#include "tools/mapping/cloud/cloud_formats.h"
+#include "tools/mapping/cloud/cloud_input.h"
 
 namespace camloc::mapping {
 namespace {
@@ -20,20 +20,13 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-/// Fields of a line. Where there are semicolons they separate, and a comma is the decimal sign.
-class LineParser {
- public:
-  const std::vector<std::string_view>& split(std::string_view line) {
-    if (line.find(';') == std::string_view::npos) return fields_ = split_fields(line, " \t,");
-    text_ = line;
-    std::replace(text_.begin(), text_.end(), ',', '.');
-    return fields_ = split_fields(text_, " \t;");
-  }
-
- private:
-  std::string text_;
-  std::vector<std::string_view> fields_;
-};
+/// Fields of a line, which look into it or into `buffer`. Where there are semicolons they separate, and a comma is the decimal sign.
+std::vector<std::string_view> split(std::string_view line, std::string* buffer) {
+  if (line.find(';') == std::string_view::npos) return split_fields(line, " \t,");
+  *buffer = line;
+  std::replace(buffer->begin(), buffer->end(), ',', '.');
+  return split_fields(*buffer, " \t;");
+}
 
 /// Columns named x, y and z (or easting, northing, height) in a header line.
 std::optional<std::array<std::size_t, 3>> named_columns(const std::vector<std::string_view>& fields) {
@@ -54,16 +47,6 @@ std::optional<std::array<std::size_t, 3>> named_columns(const std::vector<std::s
   return columns;
 }
 
-std::optional<Eigen::Vector3d> parse_point(const std::vector<std::string_view>& fields, const std::array<std::size_t, 3>& columns) {
-  Eigen::Vector3d p;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto value = columns[axis] < fields.size() ? parse_double(fields[columns[axis]]) : std::nullopt;
-    if (!value) return std::nullopt;
-    p[static_cast<Eigen::Index>(axis)] = *value;
-  }
-  return p;
-}
-
 /// Without its mark; nothing where the line is no comment.
 std::optional<std::string_view> comment_text(std::string_view line) {
   if (line.starts_with("//")) return line.substr(2);
@@ -74,7 +57,7 @@ std::optional<std::string_view> comment_text(std::string_view line) {
 }  // namespace
 
 Status read_text_cloud(CloudInput* input, CloudAccumulator* cloud) {
-  LineParser parser;
+  std::string buffer;
   std::array<std::size_t, 3> columns = {0, 1, 2};
   std::uint64_t num_points = 0, num_promised = 0;
   bool may_be_header = true;
@@ -85,7 +68,7 @@ Status read_text_cloud(CloudInput* input, CloudAccumulator* cloud) {
     if (text.empty()) continue;
     const auto comment = comment_text(text);
     if (comment && !may_be_header) continue;
-    const auto& fields = parser.split(comment.value_or(text));
+    const auto fields = split(comment.value_or(text), &buffer);
     if (const auto point = comment ? std::nullopt : parse_point(fields, columns)) {
       cloud->add(*point);
       ++num_points;

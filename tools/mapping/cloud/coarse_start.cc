@@ -30,24 +30,10 @@ struct Candidate {
   double score = 0;  ///< correlation, then the trimmed mean distance in metres
 };
 
-template <typename Points>
-PointCloud thinned(const Points& points, double cell_m) {
-  CloudAccumulator accumulator({cell_m, 1, 1});
-  for (const auto& p : points) accumulator.add(p.template cast<double>());
-  return accumulator.finish();
-}
-
 std::vector<Eigen::Vector3d> absolute(const PointCloud& cloud) {
   std::vector<Eigen::Vector3d> points;
   for (const Eigen::Vector3f& p : cloud.points_m) points.push_back(cloud.origin_m + p.cast<double>());
   return points;
-}
-
-std::vector<Eigen::Vector3d> choose(const std::vector<Eigen::Vector3d>& points, std::size_t max_points) {
-  std::vector<Eigen::Vector3d> chosen;
-  const std::size_t count = std::min(max_points, points.size());
-  for (std::size_t i = 0; i < count; ++i) chosen.push_back(points[i * points.size() / count]);
-  return chosen;
 }
 
 /// The 24 rotations that map a cube onto itself.
@@ -135,15 +121,14 @@ Result<std::vector<CoarseStart>> find_coarse_starts(std::span<const Eigen::Vecto
   if (map_cells.size() < 20 || cloud_cells.size() < 20) {
     return {ErrorCode::kInvalid, "map or cloud is smaller than a metre, too small to find a start; give control points (--points)"};
   }
-  const std::vector<Eigen::Vector3d> samples = choose(absolute(thinned(map_cells, kCellM)), kNumSamples);
+  const std::vector<Eigen::Vector3d> samples = chosen_evenly(absolute(thinned(map_cells, kCellM)), kNumSamples);
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& p : samples) center += p / static_cast<double>(samples.size());
 
   const Rigid3 identity{Eigen::Quaterniond::Identity(), -cloud_origin_m};
   std::vector<Candidate> candidates = slide(samples, map_cells, cloud_cells);
   candidates.push_back({identity, 0});
-  std::vector<Eigen::Vector3f> targets;
-  for (const Eigen::Vector3d& p : cloud_cells) targets.push_back(p.cast<float>());
+  const std::vector<Eigen::Vector3f> targets = to_float(cloud_cells);
   const CloudIndex index(targets);
   for (Candidate& candidate : candidates) improve(samples, index, &candidate);
   std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.score < b.score; });

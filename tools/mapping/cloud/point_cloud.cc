@@ -33,6 +33,20 @@ std::array<Eigen::Vector3d, 2> PointCloud::bounds_m() const {
   return bounds;
 }
 
+std::vector<Eigen::Vector3d> chosen_evenly(std::span<const Eigen::Vector3d> points, std::size_t max_points) {
+  std::vector<Eigen::Vector3d> chosen;
+  const std::size_t count = std::min(points.size(), max_points);
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(points[i * points.size() / count]);
+  return chosen;
+}
+
+std::vector<Eigen::Vector3f> to_float(std::span<const Eigen::Vector3d> points) {
+  std::vector<Eigen::Vector3f> result;
+  result.reserve(points.size());
+  for (const Eigen::Vector3d& p : points) result.push_back(p.cast<float>());
+  return result;
+}
+
 CloudAccumulator::CloudAccumulator(const CloudOptions& options) : options_(options), compact_at_(kCompactAt) {}
 
 void CloudAccumulator::add(const Eigen::Vector3d& p) {

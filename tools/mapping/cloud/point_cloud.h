@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace camloc::mapping {
@@ -58,5 +59,18 @@ class CloudAccumulator {
   std::size_t num_compact_ = 0;
   std::size_t compact_at_ = 0;
 };
+
+/// A point a voxel of `cell_m`.
+template <typename Points>
+[[nodiscard]] PointCloud thinned(const Points& points_m, double cell_m) {
+  CloudAccumulator accumulator({cell_m, 1, 1});
+  for (const auto& p : points_m) accumulator.add(p.template cast<double>());
+  return accumulator.finish();
+}
+
+/// At most `max_points`, evenly by their order.
+[[nodiscard]] std::vector<Eigen::Vector3d> chosen_evenly(std::span<const Eigen::Vector3d> points, std::size_t max_points);
+/// As single floats.
+[[nodiscard]] std::vector<Eigen::Vector3f> to_float(std::span<const Eigen::Vector3d> points);
 
 }  // namespace camloc::mapping

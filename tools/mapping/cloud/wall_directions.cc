@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tools/mapping/cloud/cloud_index.h"
+#include "tools/mapping/cloud/point_cloud.h"
 
 namespace camloc::mapping {
 namespace {
@@ -16,8 +17,7 @@ constexpr double kAcrossCosine = 0.17;  // 80 degrees
 constexpr int kRefinements = 5;
 
 std::vector<Eigen::Vector3d> normals_of(const std::vector<Eigen::Vector3d>& points_m) {
-  std::vector<Eigen::Vector3f> points;
-  for (const Eigen::Vector3d& p : points_m) points.push_back(p.cast<float>());
+  const std::vector<Eigen::Vector3f> points = to_float(points_m);
   CloudIndex index(points);
   std::vector<Eigen::Vector3d> normals;
   const std::size_t count = std::min(kMaxNormals, points.size());

@@ -28,9 +28,7 @@ Eigen::Vector3d up_of(const Evaluation& evaluation, const PointCloud& cloud) {
   const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
   if (up.norm() < 1e-3 || up.normalized().dot(z) > kNearCosine) return z;
   up.normalize();
-  CloudAccumulator cells({0.1, 1, 1});
-  for (const Eigen::Vector3f& p : cloud.points_m) cells.add(p.cast<double>());
-  const PointCloud coarse = cells.finish();
+  const PointCloud coarse = thinned(cloud.points_m, 0.1);
   std::vector<Eigen::Vector3d> points;
   for (const Eigen::Vector3f& p : coarse.points_m) points.push_back(p.cast<double>());
   const Eigen::Matrix3d walls = wall_directions(points);

@@ -43,9 +43,7 @@ Status check_points(const MapView& map, const MapPoints& points, std::uint32_t m
 }
 
 Eigen::Vector3d extent_of(const std::vector<Eigen::Vector3d>& points) {
-  CloudAccumulator accumulator({0.05, 1, 1});
-  for (const Eigen::Vector3d& p : points) accumulator.add(p);
-  const auto bounds = accumulator.finish().bounds_m();
+  const auto bounds = thinned(points, 0.05).bounds_m();
   return bounds[1] - bounds[0];
 }
 

@@ -61,62 +61,62 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
-/// One line of a file: every reader names file, line and field.
+/// One line of a file. What is wrong first is kept, with file, line and field; what is read after that means nothing.
 class RowReader {
  public:
   RowReader(const std::string& file_name, int line, const Row& row) : file_name_(file_name), line_(line), row_(row) {}
 
-  [[nodiscard]] Status error(const std::string& what) const { return line_error(file_name_, line_, what); }
+  [[nodiscard]] const Status& status() const { return status_; }
+  void fail(const std::string& what) {
+    if (status_.is_ok()) status_ = line_error(file_name_, line_, what);
+  }
 
-  Result<double> number(std::size_t field, double low, double high, const std::string& what) const {
+  double number(std::size_t field, double low, double high, const std::string& what) {
     const std::optional<double> value = parse_double(row_[field]);
-    if (!value || !std::isfinite(*value)) return error(what + " " + in_quotes(row_[field]) + " is not a number (decimal point, no unit)");
-    if (*value < low || *value > high) return error(what + " " + in_quotes(row_[field]) + " is out of range");
-    return *value;
+    if (!value || !std::isfinite(*value)) {
+      fail(what + " " + in_quotes(row_[field]) + " is not a number (decimal point, no unit)");
+    } else if (*value < low || *value > high) {
+      fail(what + " " + in_quotes(row_[field]) + " is out of range");
+    }
+    return value.value_or(0);
   }
 
   /// Fit for tables and messages.
-  [[nodiscard]] Status check_name(std::string_view name) const {
-    if (name.empty()) return error("no name");
+  std::string name(std::string_view name) {
     const bool is_printable = std::none_of(name.begin(), name.end(), [](char c) { return (c >= 0 && c < ' ') || c == 127; });
-    if (!is_printable || name.size() > kMaxNameBytes) return error("name " + in_quotes(name) + " is too long or has control characters");
-    return Status::ok();
+    if (name.empty()) fail("no name");
+    if (!is_printable || name.size() > kMaxNameBytes) fail("name " + in_quotes(name) + " is too long or has control characters");
+    return std::string(name);
   }
 
-  /// Three numbers from `field` on.
-  Result<Eigen::Vector3d> position(const std::array<std::size_t, 3>& fields) const {
-    constexpr std::array<const char*, 3> kNames = {"x", "y", "z"};
-    Eigen::Vector3d position;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const Result<double> value = number(fields[axis], -kMaxCoordinateM, kMaxCoordinateM, kNames[axis]);
-      if (!value) return value.status();
-      position[static_cast<Eigen::Index>(axis)] = *value;
-    }
-    return position;
+  Eigen::Vector3d position(const std::array<std::size_t, 3>& fields) {
+    const auto coordinate = [&](std::size_t axis, const char* what) {
+      return number(fields[axis], -kMaxCoordinateM, kMaxCoordinateM, what);
+    };
+    const double x = coordinate(0, "x"), y = coordinate(1, "y"), z = coordinate(2, "z");
+    return {x, y, z};
   }
 
   /// The field when it is there, else `fallback`.
-  Result<double> sigma(std::size_t field, double fallback) const {
+  double sigma(std::size_t field, double fallback) {
     if (field >= row_.size()) return fallback;
-    const Result<double> value = number(field, 0, kMaxSigma, "sigma");
-    if (!value) return value.status();
-    if (*value < 1e-6) return error("sigma must be positive");
-    return *value;
+    const double value = number(field, 0, kMaxSigma, "sigma");
+    if (value < 1e-6) fail("sigma must be positive");
+    return value;
   }
 
-  template <typename T>
-  Result<T> index(std::size_t field, const std::string& what) const {
+  std::uint32_t index(std::size_t field, const std::string& what) {
     const std::optional<std::int64_t> value = parse_int(row_[field]);
-    if (!value || *value < 0 || *value > std::numeric_limits<std::int32_t>::max()) {
-      return error(what + " " + in_quotes(row_[field]) + " is not a number from 0 on");
-    }
-    return static_cast<T>(*value);
+    const bool is_index = value && *value >= 0 && *value <= std::numeric_limits<std::int32_t>::max();
+    if (!is_index) fail(what + " " + in_quotes(row_[field]) + " is not a number from 0 on");
+    return is_index ? static_cast<std::uint32_t>(*value) : 0;
   }
 
  private:
   const std::string& file_name_;
   int line_;
   const Row& row_;
+  Status status_;
 };
 
 /// Which field of a row is what.
@@ -149,58 +149,52 @@ std::optional<Columns> columns_of_titles(const Row& row) {
   return Columns{*field_of[0], {*field_of[1], *field_of[2], *field_of[3]}, field_of[4].value_or(row.size())};
 }
 
-Result<ControlPoint> parse_point(const RowReader& reader, const Row& row, const Columns& columns, int line) {
+Result<ControlPoint> parse_point(RowReader reader, const Row& row, const Columns& columns, int line) {
   const std::size_t last = std::max({columns.name, columns.position[0], columns.position[1], columns.position[2]});
   if (row.size() <= last) {
-    return reader.error(std::to_string(row.size()) + (row.size() == 1 ? " field" : " fields") + ", expected 'name x y z [sigma_m]'");
+    reader.fail(std::to_string(row.size()) + (row.size() == 1 ? " field" : " fields") + ", expected 'name x y z [sigma_m]'");
+    return reader.status();
   }
-  const Result<Eigen::Vector3d> p_wcs = reader.position(columns.position);
-  if (!p_wcs) return p_wcs.status();
-  const Result<double> sigma_m = reader.sigma(columns.sigma, kDefaultPointSigmaM);
-  if (!sigma_m) return sigma_m.status();
-  if (const Status status = reader.check_name(row[columns.name]); !status) return status;
-  return ControlPoint{std::string(row[columns.name]), *p_wcs, *sigma_m, line};
+  ControlPoint point;
+  point.p_wcs = reader.position(columns.position);
+  point.sigma_m = reader.sigma(columns.sigma, kDefaultPointSigmaM);
+  point.name = reader.name(row[columns.name]);
+  point.line = line;
+  if (!reader.status()) return reader.status();
+  return point;
 }
 
-Result<ControlObservation> parse_observation(const RowReader& reader, const Row& row, int line) {
+Result<ControlObservation> parse_observation(RowReader reader, const Row& row, int line) {
   ControlObservation observation;
-  observation.name = row[0];
+  observation.name = reader.name(row.empty() ? std::string_view() : row[0]);
   observation.line = line;
+  if (!reader.status()) return reader.status();
   const std::string kind = row.size() > 1 ? lower_case(row[1]) : "";
-  const auto expect = [&](std::size_t num_fields, const char* form) {
-    if (row.size() == num_fields || row.size() == num_fields + 1) return Status::ok();
-    return reader.error(std::to_string(row.size()) + " fields, expected '" + form + "'");
+  const auto has_fields = [&](std::size_t num_fields, const char* form) {
+    const bool has = row.size() == num_fields || row.size() == num_fields + 1;
+    if (!has) reader.fail(std::to_string(row.size()) + " fields, expected '" + form + "'");
+    return has;
   };
-  Result<double> sigma = 0.0;
   if (kind == "map") {
-    if (const Status status = expect(5, "name map x y z [sigma_m]"); !status) return status;
-    const Result<Eigen::Vector3d> p_map = reader.position({2, 3, 4});
-    if (!p_map) return p_map.status();
-    observation.p_map = *p_map;
-    sigma = reader.sigma(5, kDefaultPickedSigmaM);
+    if (!has_fields(5, "name map x y z [sigma_m]")) return reader.status();
+    observation.p_map = reader.position({2, 3, 4});
+    observation.sigma = reader.sigma(5, kDefaultPickedSigmaM);
   } else if (kind == "landmark") {
     observation.kind = ObservationKind::kLandmark;
-    if (const Status status = expect(3, "name landmark INDEX [sigma_m]"); !status) return status;
-    const Result<std::uint32_t> index = reader.index<std::uint32_t>(2, "landmark");
-    if (!index) return index.status();
-    observation.landmark = *index;
-    sigma = reader.sigma(3, 0);
+    if (!has_fields(3, "name landmark INDEX [sigma_m]")) return reader.status();
+    observation.landmark = reader.index(2, "landmark");
+    observation.sigma = reader.sigma(3, 0);
   } else if (kind == "pixel") {
     observation.kind = ObservationKind::kPixel;
-    if (const Status status = expect(5, "name pixel FRAME u v [sigma_px]"); !status) return status;
-    const Result<std::uint64_t> frame = reader.index<std::uint64_t>(2, "frame");
-    if (!frame) return frame.status();
-    const Result<double> u = reader.number(3, -0.5, 65535, "u"), v = reader.number(4, -0.5, 65535, "v");
-    if (!u || !v) return !u ? u.status() : v.status();
-    observation.frame = *frame;
-    observation.u = *u;
-    observation.v = *v;
-    sigma = reader.sigma(5, kDefaultPixelSigmaPx);
+    if (!has_fields(5, "name pixel FRAME u v [sigma_px]")) return reader.status();
+    observation.frame = reader.index(2, "frame");
+    observation.u = reader.number(3, -0.5, 65535, "u");
+    observation.v = reader.number(4, -0.5, 65535, "v");
+    observation.sigma = reader.sigma(5, kDefaultPixelSigmaPx);
   } else {
-    return reader.error(in_quotes(row.size() > 1 ? row[1] : "") + " is not 'map', 'landmark' or 'pixel'");
+    reader.fail(in_quotes(row.size() > 1 ? row[1] : "") + " is not 'map', 'landmark' or 'pixel'");
   }
-  if (!sigma) return sigma.status();
-  observation.sigma = *sigma;
+  if (!reader.status()) return reader.status();
   return observation;
 }
 
@@ -246,9 +240,7 @@ Result<std::vector<ControlObservation>> parse_control_observations(std::string_v
   std::vector<ControlObservation> observations;
   for (const TextLine& line : lines) {
     const Row row = split_row(line.text, 3);
-    const RowReader reader(file_name, line.number, row);
-    if (const Status status = reader.check_name(row.empty() ? std::string_view() : row[0]); !status) return status;
-    const Result<ControlObservation> observation = parse_observation(reader, row, line.number);
+    const Result<ControlObservation> observation = parse_observation(RowReader(file_name, line.number, row), row, line.number);
     if (!observation) return observation.status();
     observations.push_back(*observation);
   }
