@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string>
 
-#include "tools/mapping/cloud/cloud_file.h"
+#include "tools/mapping/cloud/point_cloud.h"
 
 namespace {
 

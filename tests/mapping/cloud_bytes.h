@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/mapping/cloud/cloud_file.h"
+#include "tools/mapping/cloud/point_cloud.h"
 
 namespace camloc::mapping {
 

@@ -15,9 +15,7 @@
 #include "tools/camloc-map/commands.h"
 #include "tools/common/terminal_observer.h"
 #include "tools/mapping/build/posed_frames.h"
-#include "tools/mapping/cloud/cloud_file.h"
-#include "tools/mapping/eval/dense_cloud.h"
-#include "tools/mapping/eval/eval_pictures.h"
+#include "tools/mapping/cloud/point_cloud.h"
 #include "tools/mapping/eval/eval_report.h"
 #include "tools/mapping/eval/evaluation.h"
 

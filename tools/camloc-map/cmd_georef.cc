@@ -12,10 +12,10 @@
 #include "core/map/map_view.h"
 #include "core/map/map_writer.h"
 #include "tools/camloc-map/commands.h"
+#include "tools/common/map_points.h"
 #include "tools/common/output_path.h"
 #include "tools/common/terminal_observer.h"
 #include "tools/mapping/site/control_points.h"
-#include "tools/mapping/site/frame_localization.h"
 #include "tools/mapping/site/georef_fit.h"
 
 namespace camloc::mapping {
@@ -36,17 +36,11 @@ constexpr const char* kFooter =
 constexpr double kMinLandmarkSigmaM = 0.003;
 
 struct GeorefArguments {
-  std::string map_path, points_path, observed_path, out_path, sequence_url, camera_path;
+  GeorefSummary summary;  ///< with the paths of the files
+  std::string sequence_url, camera_path;
   GeorefOptions fit;
   bool is_dry_run = false, is_json = false;
 };
-
-/// From the keyframes alone: a datum that is already there may be the wrong one.
-std::optional<Eigen::Vector3d> rough_up_of(const MapView& map) {
-  std::vector<Rigid3> poses;
-  for (std::uint32_t k = 0; k < map.info().num_keyframes; ++k) poses.push_back(map.keyframe_pose(k));
-  return rough_up(poses);
-}
 
 Result<PointMeasurement> landmark_measurement(const MapView& map, std::uint32_t landmark) {
   if (landmark >= map.info().num_landmarks) {
@@ -64,7 +58,7 @@ bool has_pixels(const std::vector<ControlObservation>& observations) {
 
 Status check_arguments(const GeorefArguments& arguments, const std::vector<ControlObservation>& observations) {
   if (!has_pixels(observations) || (!arguments.sequence_url.empty() && !arguments.camera_path.empty())) return Status::ok();
-  return {ErrorCode::kInvalid, arguments.observed_path +
+  return {ErrorCode::kInvalid, arguments.summary.observed_path +
                                    ": has pixels of recorded frames; name the recording with --sequence and its camera "
                                    "file with --camera"};
 }
@@ -112,12 +106,12 @@ Status write_datum(const MapView& map, const WcsDatum& datum, const std::string&
 }
 
 Status georef(const GeorefArguments& arguments, GeorefSummary* summary) {
-  const auto points = read_control_points(arguments.points_path);
+  const auto points = read_control_points(summary->points_path);
   if (!points) return points.status();
-  const auto observations = read_control_observations(arguments.observed_path);
+  const auto observations = read_control_observations(summary->observed_path);
   if (!observations) return observations.status();
   if (const Status status = check_arguments(arguments, *observations); !status) return status;
-  const auto map = MapView::open(arguments.map_path);
+  const auto map = MapView::open(summary->map_path);
   if (!map) return map.status();
   const auto resolved = resolve(arguments, *map, *observations);
   if (!resolved) return resolved.status();
@@ -127,7 +121,8 @@ Status georef(const GeorefArguments& arguments, GeorefSummary* summary) {
   name_partnerless(*points, *observations, summary);
   const std::vector<ObservedPoint> observed = average_measurements(resolved->measurements);
   GeorefOptions options = arguments.fit;
-  options.up_map = rough_up_of(*map);
+  // From the keyframes alone: a datum that is already there may be the wrong one.
+  options.up_map = rough_up(tools::keyframe_poses(*map));
   summary->fit = fit_georef(match_points(*points, observed), options);
   for (const ObservedPoint& point : observed) {
     if (point.farthest.empty()) continue;
@@ -141,17 +136,14 @@ Status georef(const GeorefArguments& arguments, GeorefSummary* summary) {
 }
 
 int run(const GeorefArguments& arguments) {
-  GeorefSummary summary;
-  summary.map_path = arguments.map_path;
-  summary.points_path = arguments.points_path;
-  summary.observed_path = arguments.observed_path;
-  summary.out_path = arguments.out_path.empty() ? arguments.map_path : arguments.out_path;
+  GeorefSummary summary = arguments.summary;
+  if (summary.out_path.empty()) summary.out_path = summary.map_path;
   if (const Status output = tools::check_output_path("--out", summary.out_path); !output) return report_error(output, 2);
   if (const Status status = georef(arguments, &summary); !status) { return report(status); }
   const std::string text = arguments.is_json ? format_json(summary) : format_table(summary);
   const bool is_printed = tools::print_text(text);
   if (!summary.fit.problem.empty()) {
-    return report_error({ErrorCode::kInvalid, arguments.points_path + ": " + summary.fit.problem + "; no datum was written"}, 1);
+    return report_error({ErrorCode::kInvalid, summary.points_path + ": " + summary.fit.problem + "; no datum was written"}, 1);
   }
   return is_printed ? 0 : 1;
 }
@@ -162,12 +154,12 @@ void add_georef_command(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<GeorefArguments>();
   CLI::App* command = app.add_subcommand("georef", "Fits a map into site coordinates by control points and writes the datum into it.");
   command->footer(kFooter);
-  command->add_option("MAP", arguments->map_path, "Map file (.cmap)")->required();
-  command->add_option("--points", arguments->points_path, "Surveyed control points")->required();
-  command->add_option("--observed", arguments->observed_path, "Where the map, or frames of a recording, show them")->required();
+  command->add_option("MAP", arguments->summary.map_path, "Map file (.cmap)")->required();
+  command->add_option("--points", arguments->summary.points_path, "Surveyed control points")->required();
+  command->add_option("--observed", arguments->summary.observed_path, "Where the map, or frames of a recording, show them")->required();
   command->add_option("--sequence", arguments->sequence_url, "Recording that observed pixels belong to: replay://DIR or a folder");
   command->add_option("--camera", arguments->camera_path, "Calibration of that recording's camera");
-  command->add_option("--out", arguments->out_path, "Map to write (default: MAP itself, replaced as a whole)");
+  command->add_option("--out", arguments->summary.out_path, "Map to write (default: MAP itself, replaced as a whole)");
   command->add_option("--tolerance", arguments->fit.tolerance_m, "A point that is off by less is no suspect, metres")
       ->check(CLI::Range(0.001, 100.0))
       ->capture_default_str();

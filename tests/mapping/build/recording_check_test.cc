@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Recordings that no map can be made of, and weak spots of others.
-#include "tools/mapping/build/recording_check.h"
-
 #include <gtest/gtest.h>
+
+#include "tools/mapping/build/recording_tracking.h"
 
 namespace camloc::mapping {
 namespace {

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/cloud/cell_correlation.h"
-
 #include <gtest/gtest.h>
 
 #include "tests/mapping/scanned_flat.h"
+#include "tools/mapping/cloud/cloud_index.h"
 
 namespace camloc::mapping {
 namespace {

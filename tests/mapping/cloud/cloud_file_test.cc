@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/cloud/cloud_file.h"
-
 #include <gtest/gtest.h>
 
 #include "tests/mapping/cloud_bytes.h"
+#include "tools/mapping/cloud/point_cloud.h"
 
 namespace camloc::mapping {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/eval/dense_cloud.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +7,7 @@
 #include "core/io/image_writer.h"
 #include "tests/base/recording_observer.h"
 #include "tests/tools/command_runner.h"
+#include "tools/mapping/eval/evaluation.h"
 
 namespace camloc::mapping {
 namespace {

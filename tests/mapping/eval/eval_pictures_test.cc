@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Bars are as high as their shares, and landmarks have the colour of their distance.
-#include "tools/mapping/eval/eval_pictures.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "tools/mapping/eval/eval_report.h"
 
 namespace camloc::mapping {
 namespace {

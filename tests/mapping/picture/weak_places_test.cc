@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The table names the places a person has to go to, and what to do there.
-#include "tools/mapping/picture/weak_places.h"
-
 #include <gtest/gtest.h>
 
 #include "tests/map/room_map.h"
+#include "tools/mapping/picture/map_picture.h"
 
 namespace camloc::mapping {
 namespace {

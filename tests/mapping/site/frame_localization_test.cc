@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Frames with picked pixels, localized in a map of their room; what cannot be localized says why.
-#include "tools/mapping/site/frame_localization.h"
-
 #include <gtest/gtest.h>
 
 #include <map>
@@ -13,6 +11,7 @@
 #include "tests/base/recording_observer.h"
 #include "tests/localize/sample_world.h"
 #include "tests/mapping/sample_recording.h"
+#include "tools/mapping/site/control_points.h"
 
 namespace camloc::mapping {
 namespace {

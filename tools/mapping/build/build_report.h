@@ -15,7 +15,7 @@
 #include "core/slam/slam.h"
 #include "tools/common/frame_reading.h"
 #include "tools/mapping/build/merge_pipeline.h"
-#include "tools/mapping/build/recording_check.h"
+#include "tools/mapping/build/recording_tracking.h"
 #include "tools/mapping/colmap/colmap_poses.h"
 #include "tools/mapping/site/georef_fit.h"
 

@@ -3,11 +3,10 @@
 //
 // A recording is judged twice: early, by its depth images alone, so that nobody waits an hour for a refusal; and at the end, by how
 // far the camera moved. In between every frame leaves a note, and stretches of weak notes become spots with advice.
-#include "tools/mapping/build/recording_check.h"
-
 #include <algorithm>
 
 #include "tools/common/text_format.h"
+#include "tools/mapping/build/recording_tracking.h"
 
 namespace camloc::mapping {
 namespace {

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/cloud/cloud_file.h"
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -11,6 +9,7 @@
 #include <fstream>
 
 #include "core/io/text.h"
+#include "tools/mapping/cloud/point_cloud.h"
 
 namespace camloc::mapping {
 namespace {

@@ -76,11 +76,7 @@ std::optional<CloudIndex::Neighbor> CloudIndex::nearest(const Eigen::Vector3d& p
   nanoflann::KNNResultSet<float, std::uint32_t> result(1);
   result.init(&index, &squared_m2);
   // An upper bound from the start cuts the search short far from the cloud.
-  const double limit = max_distance_m * max_distance_m;
-  if (limit < static_cast<double>(std::numeric_limits<float>::max()))
-    squared_m2 = static_cast<float>(limit);
-  else
-    squared_m2 = std::numeric_limits<float>::max();
+  squared_m2 = static_cast<float>(std::min<double>(max_distance_m * max_distance_m, std::numeric_limits<float>::max()));
   impl_->tree.findNeighbors(result, query.data(), nanoflann::SearchParams());
   if (result.size() == 0) return std::nullopt;
   return Neighbor{index, (p_m - impl_->adaptor.points[index].cast<double>()).norm()};

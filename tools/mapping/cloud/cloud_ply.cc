@@ -28,9 +28,6 @@ struct Element {
   std::uint64_t count = 0;
   std::vector<Property> properties;
 
-  [[nodiscard]] bool has_lists() const {
-    return std::any_of(properties.begin(), properties.end(), [](const Property& p) { return p.list_count_type.has_value(); });
-  }
   /// Bytes without what is in the lists.
   [[nodiscard]] std::size_t min_bytes() const {
     std::size_t bytes = 0;
@@ -143,35 +140,6 @@ bool read_binary_element(CloudInput* input, const Element& element, bool is_big_
   return true;
 }
 
-/// Elements whose properties all have a fixed size, the usual case: a record at a time.
-Status read_binary_records(CloudInput* input, const Element& element, bool is_big_endian, const std::array<std::size_t, 3>& axes,
-                           CloudAccumulator* cloud) {
-  RecordAxes at;
-  at.is_big_endian = is_big_endian;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    at.type[axis] = element.properties[axes[axis]].type;
-    for (std::size_t i = 0; i < axes[axis]; ++i) at.byte[axis] += scalar_bytes(element.properties[i].type);
-  }
-  const std::size_t record_bytes = element.min_bytes();
-  for (std::uint64_t i = 0; i < element.count; ++i) {
-    const auto record = input->read(record_bytes);
-    if (record.empty()) return cut_off(*input, element, i);
-    cloud->add(at.point(record.data()));
-  }
-  return Status::ok();
-}
-
-Status read_binary_vertices(CloudInput* input, const Element& element, bool is_big_endian, const std::array<std::size_t, 3>& axes,
-                            CloudAccumulator* cloud) {
-  if (!element.has_lists()) return read_binary_records(input, element, is_big_endian, axes, cloud);
-  std::vector<double> values(element.properties.size());
-  for (std::uint64_t i = 0; i < element.count; ++i) {
-    if (!read_binary_element(input, element, is_big_endian, &values)) return cut_off(*input, element, i);
-    cloud->add({values[axes[0]], values[axes[1]], values[axes[2]]});
-  }
-  return Status::ok();
-}
-
 /// The scalars of one element in text, a line each.
 bool parse_ascii_element(std::string_view line, const Element& element, std::vector<double>* values) {
   const auto fields = split_fields(line, " \t");
@@ -188,15 +156,20 @@ bool parse_ascii_element(std::string_view line, const Element& element, std::vec
   return true;
 }
 
-Status read_ascii_vertices(CloudInput* input, const Element& element, const std::array<std::size_t, 3>& axes, CloudAccumulator* cloud) {
+Status read_vertices(CloudInput* input, const Element& element, const Header& header, const std::array<std::size_t, 3>& axes,
+                     CloudAccumulator* cloud) {
   std::vector<double> values(element.properties.size());
   for (std::uint64_t i = 0; i < element.count;) {
-    const auto line = input->read_line();
-    if (!line) return cut_off(*input, element, i);
-    if (trimmed(*line).empty()) continue;
-    if (!parse_ascii_element(*line, element, &values)) {
-      return input->error(ErrorCode::kCorrupt, "vertex " + std::to_string(i) + " is no line of " + std::to_string(values.size()) +
-                                                   " numbers: " + in_quotes(trimmed(*line)));
+    if (header.is_ascii) {
+      const auto line = input->read_line();
+      if (!line) return cut_off(*input, element, i);
+      if (trimmed(*line).empty()) continue;
+      if (!parse_ascii_element(*line, element, &values)) {
+        return input->error(ErrorCode::kCorrupt, "vertex " + std::to_string(i) + " is no line of " + std::to_string(values.size()) +
+                                                     " numbers: " + in_quotes(trimmed(*line)));
+      }
+    } else if (!read_binary_element(input, element, header.is_big_endian, &values)) {
+      return cut_off(*input, element, i);
     }
     cloud->add({values[axes[0]], values[axes[1]], values[axes[2]]});
     ++i;
@@ -234,8 +207,7 @@ Status read_ply(CloudInput* input, CloudAccumulator* cloud) {
     }
     const auto axes = find_axes(element);
     if (!axes) return input->error(ErrorCode::kCorrupt, "its vertices have no properties x, y and z");
-    if (header.value().is_ascii) return read_ascii_vertices(input, element, *axes, cloud);
-    return read_binary_vertices(input, element, header.value().is_big_endian, *axes, cloud);
+    return read_vertices(input, element, header.value(), *axes, cloud);
   }
   return input->error(ErrorCode::kCorrupt, "has no element 'vertex'");
 }

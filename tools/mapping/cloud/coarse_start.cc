@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/geometry/alignment.h"
-#include "tools/mapping/cloud/cell_correlation.h"
 #include "tools/mapping/cloud/cloud_index.h"
 #include "tools/mapping/cloud/cloud_registration.h"
 #include "tools/mapping/cloud/point_cloud.h"

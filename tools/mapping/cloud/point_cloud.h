@@ -2,13 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A cloud of surface points, thinned to one point a voxel while it is read, so that a scan of any size fits into memory.
+// Read from files (cloud_file.cc): PLY, PCD, LAS, and text tables (XYZ, PTS, CSV). The kind is told from the content, the name only
+// decides where the content does not say.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <istream>
 #include <span>
+#include <string>
 #include <vector>
+
+#include "core/base/result.h"
+#include "core/base/work_observer.h"
 
 namespace camloc::mapping {
 
@@ -72,5 +79,15 @@ template <typename Points>
 [[nodiscard]] std::vector<Eigen::Vector3d> chosen_evenly(std::span<const Eigen::Vector3d> points, std::size_t max_points);
 /// As single floats.
 [[nodiscard]] std::vector<Eigen::Vector3f> to_float(std::span<const Eigen::Vector3d> points);
+
+/// Errors, all naming the file: kNotFound, kIo (unreadable, or stopped by `observer`), kUnsupported (LAZ, E57, an unknown kind, a
+/// variant that is not read; says how to convert), kCorrupt (truncated, counts larger than the file, a line that is no
+/// point), kInvalid (no points, none of them finite).
+[[nodiscard]] Result<PointCloud> read_cloud(const std::string& path, const CloudOptions& options,
+                                            WorkObserver& observer = WorkObserver::nobody());
+
+/// The same from a stream; `name` also gives the extension.
+[[nodiscard]] Result<PointCloud> read_cloud(std::istream& stream, const std::string& name, const CloudOptions& options,
+                                            WorkObserver& observer = WorkObserver::nobody());
 
 }  // namespace camloc::mapping

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "core/io/replace_file.h"
+#include "tools/common/text_format.h"
 #include "tools/mapping/colmap/colmap_model.h"
 
 namespace camloc::mapping {
@@ -16,14 +17,6 @@ namespace {
 void append_value(double value, std::string* text) {
   char digits[40];
   const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
-  *text += ' ';
-  text->append(digits, end);
-}
-
-/// " VALUE" with `decimals` of them.
-void append_fixed(double value, int decimals, std::string* text) {
-  char digits[400];
-  const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed, decimals);
   *text += ' ';
   text->append(digits, end);
 }
@@ -48,9 +41,7 @@ std::string format_images(const ColmapModel& model, const std::string& comment) 
     text += " " + std::to_string(image.camera_id) + " " + image.name + "\n";
     std::string keypoints;
     for (const ColmapObservation& seen : image.observations) {
-      append_fixed(seen.u, 3, &keypoints);
-      append_fixed(seen.v, 3, &keypoints);
-      keypoints += " " + std::to_string(seen.point + 1);
+      keypoints += tools::text_of(" %.3f %.3f %u", seen.u, seen.v, seen.point + 1);
     }
     text += (keypoints.empty() ? keypoints : keypoints.substr(1)) + "\n";
   }

@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/eval/dense_cloud.h"
-
 #include <cmath>
 
 #include "drivers/sources.h"
 #include "tools/common/frame_reading.h"
+#include "tools/mapping/eval/evaluation.h"
 
 namespace camloc::mapping {
 namespace {

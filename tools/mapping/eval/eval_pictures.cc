@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/eval/eval_pictures.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/order_statistics.h"
 #include "tools/common/text_format.h"
 #include "tools/mapping/cloud/cloud_index.h"
+#include "tools/mapping/eval/eval_report.h"
 #include "tools/mapping/picture/point_raster.h"
 
 namespace camloc::mapping {
@@ -19,6 +18,7 @@ constexpr Rgb kNight{18, 19, 22}, kLight{228, 228, 232}, kCamera{255, 255, 255},
 constexpr int kWidth = 1400, kMinHeight = 360, kMaxHeight = 1400, kMargin = 50, kHeader = 75, kFooter = 45;
 constexpr double kNearCosine = 0.866;  // 30 degrees
 constexpr double kFullScaleM = 0.10;
+constexpr double kCameraSpacingPx = 12;
 constexpr std::size_t kFirstRampEntry = 70;  // darker ones cannot be told from the background
 
 /// The cameras' mean up, corrected to the cloud's z axis or else to the walls: who holds a camera looks down a little.
@@ -82,19 +82,6 @@ void add_landmarks(const Evaluation& evaluation, Viewpoint viewpoint, PointRaste
   }
   viewpoint.T_view_world.translation.z() -= 1e4;  // over the cloud, whatever is above them
   raster->add_points(viewpoint, evaluation.landmarks_m, colors, 1.5);
-}
-
-/// Not one over the other: where cameras stand closer than their symbols are large, some are left out.
-void add_keyframes(const Evaluation& evaluation, const Viewpoint& viewpoint, PointRaster* raster) {
-  constexpr double kSpacingPx = 12;
-  std::vector<Eigen::Vector2d> drawn;
-  for (const Rigid3& T : evaluation.T_cloud_keyframe) {
-    const Eigen::Vector2d pixel = viewpoint.px_per_m * (viewpoint.T_view_world * T.translation).head<2>();
-    if (std::any_of(drawn.begin(), drawn.end(), [&](const Eigen::Vector2d& other) { return (other - pixel).norm() < kSpacingPx; }))
-      continue;
-    drawn.push_back(pixel);
-    raster->add_camera(viewpoint, T, std::max(0.1, 12 / viewpoint.px_per_m), kCamera);
-  }
 }
 
 /// The view that fills the width, and the height that it needs.
@@ -172,7 +159,7 @@ ColorImage draw_cloud_view(const Evaluation& evaluation, const PointCloud& cloud
   PointRaster raster(kWidth, height, kNight);
   add_cloud(evaluation, cloud, viewpoint, up, view == CloudView::kTop ? eye_level(evaluation, up) : 1e18, &raster);
   add_landmarks(evaluation, viewpoint, &raster);
-  add_keyframes(evaluation, viewpoint, &raster);
+  raster.add_cameras(viewpoint, evaluation.T_cloud_keyframe, kCameraSpacingPx, std::max(0.1, 12 / viewpoint.px_per_m), kCamera);
   raster.add_rectangle(0, 0, kWidth, kHeader, kNight);
   raster.add_rectangle(0, height - kFooter, kWidth, kFooter, kNight);
   raster.add_text(30, 34, title, 14, kLight);

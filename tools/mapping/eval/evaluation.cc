@@ -24,22 +24,17 @@ constexpr std::size_t kMaxSearchPoints = 3000;  // for each start of a search
 constexpr double kSearchDistanceM = 1.5, kSearchTrim = 0.8;
 constexpr double kPoseLeverM = 1.0;  // what a rotation weighs against a position between two trajectories
 
-struct MapPoints {
-  std::vector<Eigen::Vector3d> landmarks;  ///< with enough observations
-  std::vector<Rigid3> T_map_keyframe;
-};
-
-MapPoints points_of(const MapView& map, std::uint32_t min_observations) {
-  MapPoints points{tools::landmark_positions(map, min_observations), {}};
-  for (std::uint32_t i = 0; i < map.keyframes().size(); ++i) points.T_map_keyframe.push_back(map.keyframe_pose(i));
-  return points;
-}
-
-Status check_points(const MapView& map, const MapPoints& points, std::uint32_t min_observations) {
+Status check_points(const MapView& map, const std::vector<Eigen::Vector3d>& points, std::uint32_t min_observations) {
   if (map.landmarks().empty()) return {ErrorCode::kInvalid, map.info().path + ": has no landmarks, there is nothing to evaluate"};
-  if (!points.landmarks.empty()) return Status::ok();
+  if (!points.empty()) return Status::ok();
   return {ErrorCode::kInvalid, text_of("%s: none of its %zu landmarks was seen at least %u times; lower --min-observations",
                                        map.info().path.c_str(), map.landmarks().size(), min_observations)};
+}
+
+/// The pose in a frame whose origin is at `-offset`.
+Rigid3 shifted(Rigid3 T, const Eigen::Vector3d& offset) {
+  T.translation += offset;
+  return T;
 }
 
 Eigen::Vector3d extent_of(const std::vector<Eigen::Vector3d>& points) {
@@ -48,9 +43,9 @@ Eigen::Vector3d extent_of(const std::vector<Eigen::Vector3d>& points) {
 }
 
 /// Scanners and CAD programs like millimetres.
-Status check_unit(const MapPoints& points, const PointCloud& cloud) {
+Status check_unit(const std::vector<Eigen::Vector3d>& points, const PointCloud& cloud) {
   const auto bounds = cloud.bounds_m();
-  const double cloud_m = (bounds[1] - bounds[0]).norm(), map_m = extent_of(points.landmarks).norm();
+  const double cloud_m = (bounds[1] - bounds[0]).norm(), map_m = extent_of(points).norm();
   if (!(cloud_m > 300 * map_m && cloud_m < 5000 * map_m && cloud_m > 1000)) return Status::ok();
   return {ErrorCode::kInvalid,
           text_of("the cloud is %.0f m wide and the map %.1f m: the cloud seems to be in millimetres; say so with --lidar-unit mm", cloud_m,
@@ -68,8 +63,7 @@ std::vector<PointPair> pairs_of(const std::vector<ControlPair>& controls, const 
 std::vector<PointPair> pairs_of(const std::vector<PosePair>& poses, const Eigen::Vector3d& origin_m, bool has_axes) {
   std::vector<PointPair> pairs;
   for (const PosePair& pose : poses) {
-    const Rigid3 T_origin_camera{pose.T_reference_camera.rotation, pose.T_reference_camera.translation - origin_m};
-    add_pose_points(T_origin_camera, pose.T_map_camera, has_axes ? kPoseLeverM : 0, &pairs);
+    add_pose_points(shifted(pose.T_reference_camera, -origin_m), pose.T_map_camera, has_axes ? kPoseLeverM : 0, &pairs);
   }
   return pairs;
 }
@@ -93,18 +87,16 @@ bool is_same_place(const Rigid3& a, const Rigid3& b, const std::vector<Eigen::Ve
 }
 
 /// Every coarse start is refined; what fits best wins.
-Result<Rigid3> search_start(const EvaluationInput& input, const MapPoints& points, const EvaluationOptions& options, CloudIndex* cloud,
-                            SearchOutcome* outcome) {
-  const auto starts = find_coarse_starts(points.landmarks, input.cloud->points_m, input.cloud->origin_m);
+Result<Rigid3> search_start(const EvaluationInput& input, const std::vector<Eigen::Vector3d>& points, const EvaluationOptions& options,
+                            CloudIndex* cloud, SearchOutcome* outcome) {
+  const auto starts = find_coarse_starts(points, input.cloud->points_m, input.cloud->origin_m);
   if (!starts.is_ok()) return starts.status();
-  RegistrationOptions registration;
-  registration.trim = std::min(options.trim, kSearchTrim);
-  registration.max_distance_m = options.max_distance_m;
-  registration.start_distance_m = std::max(kSearchDistanceM, options.max_distance_m);
-  registration.max_points = kMaxSearchPoints;
+  const RegistrationOptions registration{.trim = std::min(options.trim, kSearchTrim),
+                                         .max_distance_m = options.max_distance_m,
+                                         .start_distance_m = std::max(kSearchDistanceM, options.max_distance_m),
+                                         .max_points = kMaxSearchPoints};
   std::vector<Eigen::Vector3d> some;
-  for (std::size_t i = 0; i < points.landmarks.size(); i += points.landmarks.size() / kMaxSearchPoints + 1)
-    some.push_back(points.landmarks[i]);
+  for (std::size_t i = 0; i < points.size(); i += points.size() / kMaxSearchPoints + 1) some.push_back(points[i]);
   std::vector<CoarseStart> refined;  // score_m is the capped mean distance from here on
   for (const CoarseStart& start : starts.value()) {
     const auto result = register_points(some, cloud, {1, start.T_cloud_map}, registration);
@@ -127,13 +119,9 @@ Result<Rigid3> search_start(const EvaluationInput& input, const MapPoints& point
 }
 
 /// T_cloud_map relative to the cloud's origin.
-Result<Rigid3> find_start(const EvaluationInput& input, const MapPoints& points, const EvaluationOptions& options, CloudIndex* cloud,
-                          Evaluation* result) {
+Result<Rigid3> find_start(const EvaluationInput& input, const std::vector<Eigen::Vector3d>& points, const EvaluationOptions& options,
+                          CloudIndex* cloud, Evaluation* result) {
   const Eigen::Vector3d& origin_m = input.cloud->origin_m;
-  const auto relative = [&](Rigid3 T) {
-    T.translation -= origin_m;
-    return T;
-  };
   switch (result->start) {
     case AlignStart::kPoints: {
       if (input.points.empty()) return {ErrorCode::kInvalid, "--align points needs control points: --points FILE"};
@@ -149,7 +137,7 @@ Result<Rigid3> find_start(const EvaluationInput& input, const MapPoints& points,
     case AlignStart::kDatum:
       if (!input.map->info().wcs)
         return {ErrorCode::kInvalid, "--align datum: " + input.map->info().path + " has no datum; camloc map georef gives it one"};
-      return relative(input.map->info().wcs->T_wcs_map);
+      return shifted(input.map->info().wcs->T_wcs_map, -origin_m);
     case AlignStart::kAuto:
     case AlignStart::kSearch: {
       result->search.emplace();
@@ -157,27 +145,21 @@ Result<Rigid3> find_start(const EvaluationInput& input, const MapPoints& points,
     }
     case AlignStart::kNone: break;
   }
-  return relative(Rigid3{});
-}
-
-double start_distance_of(AlignStart start, const EvaluationOptions& options) {
-  const double found_m = start == AlignStart::kDatum || start == AlignStart::kTrajectory ? 1.0 : 0.5;
-  return std::max(found_m, options.max_distance_m);
+  return shifted({}, -origin_m);
 }
 
 /// Trimmed ICP on a part of the landmarks, then on more of them.
-Result<Registration> refine(const MapPoints& points, const Rigid3& start, const EvaluationOptions& options, AlignStart kind,
-                            CloudIndex* cloud) {
-  RegistrationOptions registration;
-  registration.trim = options.trim;
-  registration.max_distance_m = options.max_distance_m;
-  registration.start_distance_m = start_distance_of(kind, options);
-  auto coarse = register_points(points.landmarks, cloud, {1, start}, registration);
-  if (!coarse.is_ok() || points.landmarks.size() <= registration.max_points) return coarse;
+Result<Registration> refine(const std::vector<Eigen::Vector3d>& points, const Rigid3& start, const EvaluationOptions& options,
+                            AlignStart kind, CloudIndex* cloud) {
+  const double found_m = kind == AlignStart::kDatum || kind == AlignStart::kTrajectory ? 1.0 : 0.5;
+  RegistrationOptions registration{
+      .trim = options.trim, .max_distance_m = options.max_distance_m, .start_distance_m = std::max(found_m, options.max_distance_m)};
+  auto coarse = register_points(points, cloud, {1, start}, registration);
+  if (!coarse.is_ok() || points.size() <= registration.max_points) return coarse;
   registration.start_distance_m = registration.max_distance_m;
   registration.max_points = kMaxFinalPoints;
   registration.max_iterations = 20;
-  return register_points(points.landmarks, cloud, coarse.value().T_cloud_map, registration);
+  return register_points(points, cloud, coarse.value().T_cloud_map, registration);
 }
 
 /// RMS distance from the middle, in the cloud.
@@ -189,14 +171,14 @@ double spread_of(const std::vector<PointPair>& pairs) {
   return std::sqrt(sum);
 }
 
-void check_scale(const EvaluationInput& input, const MapPoints& points, const Rigid3& T_cloud_map, const EvaluationOptions& options,
-                 CloudIndex* cloud, Evaluation* result) {
-  RegistrationOptions registration;
-  registration.has_scale = true;
-  registration.trim = options.trim;
-  registration.max_distance_m = registration.start_distance_m = options.max_distance_m;
-  registration.max_iterations = 40;
-  if (const auto similar = register_points(points.landmarks, cloud, {1, T_cloud_map}, registration); similar.is_ok()) {
+void check_scale(const EvaluationInput& input, const std::vector<Eigen::Vector3d>& points, const Rigid3& T_cloud_map,
+                 const EvaluationOptions& options, CloudIndex* cloud, Evaluation* result) {
+  const RegistrationOptions registration{.trim = options.trim,
+                                         .max_distance_m = options.max_distance_m,
+                                         .start_distance_m = options.max_distance_m,
+                                         .max_iterations = 40,
+                                         .has_scale = true};
+  if (const auto similar = register_points(points, cloud, {1, T_cloud_map}, registration); similar.is_ok()) {
     result->scale = similar.value().T_cloud_map.scale;
     result->sigma_scale = similar.value().sigma_scale;
   }
@@ -236,13 +218,13 @@ const char* describe(AlignStart start) {
 
 Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOptions& options, WorkObserver& observer) {
   const Status stopped(ErrorCode::kIo, "interrupted");
-  const MapPoints points = points_of(*input.map, options.min_observations);
+  const std::vector<Eigen::Vector3d> points = tools::landmark_positions(*input.map, options.min_observations);
   if (const Status checked = check_points(*input.map, points, options.min_observations); !checked.is_ok()) return checked;
   if (const Status checked = check_unit(points, *input.cloud); !checked.is_ok()) return checked;
   Evaluation result;
   result.num_landmarks = input.map->landmarks().size();
-  result.num_used = points.landmarks.size();
-  result.num_keyframes = points.T_map_keyframe.size();
+  result.num_used = points.size();
+  result.num_keyframes = input.map->keyframes().size();
 
   if (!observer.on_progress("indexing the cloud ...")) return stopped;
   CloudIndex cloud(input.cloud->points_m);
@@ -265,22 +247,18 @@ Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOp
   check_scale(input, points, T_cloud_map, options, &cloud, &result);
 
   if (!observer.on_progress("measuring distances ...")) return stopped;
-  for (const Eigen::Vector3d& p : points.landmarks) result.landmarks_m.push_back(T_cloud_map * p);
-  for (const Rigid3& T : points.T_map_keyframe) {
+  for (const Eigen::Vector3d& p : points) result.landmarks_m.push_back(T_cloud_map * p);
+  for (const Rigid3& T : tools::keyframe_poses(*input.map)) {
     result.T_cloud_keyframe.push_back(T_cloud_map * T);
     result.keyframes_m.push_back(result.T_cloud_keyframe.back().translation);
   }
   result.max_distance_m = options.max_distance_m;
   result.distances = measure_distances(result.landmarks_m, result.keyframes_m, &cloud, options.max_distance_m);
   measure_residuals(input, T_cloud_map, &result);
-  const auto absolute = [&](Rigid3 T) {
-    T.translation += input.cloud->origin_m;
-    return T;
-  };
-  result.T_cloud_map_start = absolute(start.value());
-  result.T_cloud_map = absolute(T_cloud_map);
-  const Eigen::Vector3d center = std::accumulate(points.landmarks.begin(), points.landmarks.end(), Eigen::Vector3d(0, 0, 0)) /
-                                 static_cast<double>(points.landmarks.size());
+  result.T_cloud_map_start = shifted(start.value(), input.cloud->origin_m);
+  result.T_cloud_map = shifted(T_cloud_map, input.cloud->origin_m);
+  const Eigen::Vector3d center =
+      std::accumulate(points.begin(), points.end(), Eigen::Vector3d(0, 0, 0)) / static_cast<double>(points.size());
   result.moved_m = (T_cloud_map * center - start.value() * center).norm();
   result.moved_rad = rotation_distance_rad(T_cloud_map.rotation, start.value().rotation);
   return result;

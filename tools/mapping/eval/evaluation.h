@@ -10,10 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "core/base/frame.h"
 #include "core/base/result.h"
 #include "core/base/work_observer.h"
+#include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
 #include "core/map/map_view.h"
+#include "tools/mapping/build/posed_frames.h"
 #include "tools/mapping/cloud/cloud_distance.h"
 #include "tools/mapping/cloud/cloud_registration.h"
 #include "tools/mapping/cloud/point_cloud.h"
@@ -83,5 +86,14 @@ struct Evaluation {
 
 /// Name of a start, as in the report.
 [[nodiscard]] const char* describe(AlignStart start);
+
+/// Every second depth pixel of every second row; those farther than 3.5 m or at depth edges, and voxels with fewer than three points,
+/// are left out. Points are in the frame of the poses. Errors: of opening the recording; kInvalid
+/// when no depth is left; kIo when stopped. Broken frames are skipped.
+[[nodiscard]] Result<PointCloud> fuse_dense_cloud(const PosedFrames& frames, const RgbdCamera& camera, double voxel_m,
+                                                  WorkObserver& observer = WorkObserver::nobody());
+
+/// The points of one depth image in the frame of T_world_camera (the colour camera's pose).
+void add_depth_image(const RgbdCamera& camera, ImageView<std::uint16_t> depth, const Rigid3& T_world_camera, CloudAccumulator* cloud);
 
 }  // namespace camloc::mapping

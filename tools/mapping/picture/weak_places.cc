@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/picture/weak_places.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "core/base/order_statistics.h"
 #include "tools/common/text_format.h"
+#include "tools/mapping/picture/map_picture.h"
 
 namespace camloc::mapping {
 namespace {

@@ -67,10 +67,6 @@ double robust_residual_m(std::span<const PointPair> pairs) {
   return upper_median(std::move(residuals));
 }
 
-bool has_majority(const Consensus& consensus, std::size_t num_pairs) {
-  return consensus.num_inliers >= 3 && 2 * consensus.num_inliers > num_pairs;
-}
-
 }  // namespace
 
 std::string explain_misfit(std::span<const PointPair> pairs, std::size_t num_agreeing, double tolerance_m,
@@ -86,7 +82,7 @@ std::string explain_misfit(std::span<const PointPair> pairs, std::size_t num_agr
         if (is_rescaled) pair.p_a /= scale;
       }
       const Consensus consensus = find_consensus(changed, tolerance_m);
-      if (!has_majority(consensus, pairs.size()) || consensus.num_inliers <= num_agreeing) continue;
+      if (!consensus.has_majority() || consensus.num_inliers <= num_agreeing) continue;
       std::vector<PointPair> agreeing;
       for (std::size_t i = 0; i < changed.size(); ++i) {
         if (consensus.is_inlier[i]) agreeing.push_back(changed[i]);

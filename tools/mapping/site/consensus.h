@@ -20,6 +20,7 @@ struct Consensus {
   std::vector<bool> is_inlier;  ///< as many as pairs; empty when no triple determines a motion
   std::size_t num_inliers = 0;
   double rms_m = 0;  ///< of the inliers
+  [[nodiscard]] bool has_majority() const { return num_inliers >= 3 && 2 * num_inliers > is_inlier.size(); }
   /// Another choice of as few outliers explains the pairs about as well: which pair is wrong cannot be told.
   bool is_ambiguous = false;
   std::vector<bool> is_outlier_elsewhere;  ///< pairs that are outliers in one of those choices

@@ -119,14 +119,10 @@ class RowReader {
   Status status_;
 };
 
-/// Which field of a row is what.
-struct Columns {
-  std::size_t name = 0;
-  std::array<std::size_t, 3> position = {1, 2, 3};
-  std::size_t sigma = 4;
-};
+/// Which field of a row is the name, x, y, z and sigma.
+using Columns = std::array<std::size_t, 5>;
 
-/// Index of a column title in the order of Columns: 0 name, 1..3 x y z, 4 sigma; nullopt for any other word.
+/// Index of a column title in Columns; nullopt for any other word.
 std::optional<std::size_t> column_of(std::string_view title) {
   static const std::map<std::string, std::size_t, std::less<>> kTitles = {
       {"name", 0},   {"id", 0},        {"point", 0}, {"point_id", 0}, {"nr", 0},    {"no", 0},       {"x", 1}, {"e", 1},
@@ -146,19 +142,20 @@ std::optional<Columns> columns_of_titles(const Row& row) {
   for (std::size_t column = 0; column < 4; ++column) {
     if (!field_of[column]) return std::nullopt;
   }
-  return Columns{*field_of[0], {*field_of[1], *field_of[2], *field_of[3]}, field_of[4].value_or(row.size())};
+  return Columns{*field_of[0], *field_of[1], *field_of[2], *field_of[3], field_of[4].value_or(row.size())};
 }
 
 Result<ControlPoint> parse_point(RowReader reader, const Row& row, const Columns& columns, int line) {
-  const std::size_t last = std::max({columns.name, columns.position[0], columns.position[1], columns.position[2]});
+  const auto& [name, x, y, z, sigma] = columns;
+  const std::size_t last = std::max({name, x, y, z});
   if (row.size() <= last) {
     reader.fail(std::to_string(row.size()) + (row.size() == 1 ? " field" : " fields") + ", expected 'name x y z [sigma_m]'");
     return reader.status();
   }
   ControlPoint point;
-  point.p_wcs = reader.position(columns.position);
-  point.sigma_m = reader.sigma(columns.sigma, kDefaultPointSigmaM);
-  point.name = reader.name(row[columns.name]);
+  point.p_wcs = reader.position({x, y, z});
+  point.sigma_m = reader.sigma(sigma, kDefaultPointSigmaM);
+  point.name = reader.name(row[name]);
   point.line = line;
   if (!reader.status()) return reader.status();
   return point;
@@ -211,7 +208,7 @@ Result<std::vector<ControlPoint>> parse_control_points(std::string_view text, co
   if (const Status status = check_number_of_lines(lines.size(), file_name, "control point"); !status) return status;
   std::vector<ControlPoint> points;
   std::map<std::string, int> line_of_name;
-  Columns columns;
+  Columns columns = {0, 1, 2, 3, 4};
   for (const TextLine& line : lines) {
     const Row row = split_row(line.text, 4);
     if (&line == &lines.front()) {

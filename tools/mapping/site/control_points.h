@@ -24,9 +24,11 @@
 
 #include "core/base/frame.h"
 #include "core/base/result.h"
+#include "core/base/work_observer.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/depth_registration.h"
 #include "core/geometry/wcs.h"
+#include "core/map/map_view.h"
 
 namespace camloc::mapping {
 
@@ -135,5 +137,19 @@ struct ControlPair {
 /// twice, fewer than three pairs.
 [[nodiscard]] Result<std::vector<ControlPair>> parse_point_pairs(std::string_view text, const std::string& path);
 [[nodiscard]] Result<std::vector<ControlPair>> read_point_pairs(const std::string& path);
+
+/// What one frame had to say. Errors are reasons for people.
+struct LocalizedFrame {
+  Result<PoseWithCovariance> T_map_camera = Status(ErrorCode::kNotFound, "the recording has no such frame, or it cannot be read");
+  PixelMeasurements measurements;
+};
+
+/// Localizes the frames that `observations` have pixels in. A few frames before each are run through the localizer too, so
+/// that it may track. Errors are those of opening the recording, kInvalid where its images are not the camera's, kIo where `observer` wants
+/// to stop.
+[[nodiscard]] Result<std::map<std::uint64_t, LocalizedFrame>> localize_frames(const MapView& map, const RgbdCamera& camera,
+                                                                              const std::string& sequence_url,
+                                                                              const std::vector<ControlObservation>& observations,
+                                                                              const WorkObserver& observer);
 
 }  // namespace camloc::mapping

@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Only the frames that somebody picked pixels in are wanted, each with a few before it: the localizer may track into them.
-#include "tools/mapping/site/frame_localization.h"
-
 #include <optional>
 #include <set>
 
 #include "core/localize/localizer.h"
 #include "drivers/sources.h"
 #include "tools/common/frame_reading.h"
+#include "tools/mapping/site/control_points.h"
 
 namespace camloc::mapping {
 namespace {

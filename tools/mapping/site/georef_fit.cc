@@ -21,39 +21,21 @@ using tools::text_of;
 constexpr double kMaxTurnSigmaRad = 0.05;  ///< 3 degrees: 50 cm at 10 m
 constexpr double kHighSigmas = 4;
 constexpr double kMaxScaleError = 0.01;
-constexpr std::size_t kMaxNamesInMessage = 8;
 constexpr std::size_t kMaxPoints = 2000;  ///< each is left out once
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), kMaxNamesInMessage); ++i) text += (i > 0 ? ", " : "") + names[i];
-  if (names.size() > kMaxNamesInMessage) text += " and " + std::to_string(names.size() - kMaxNamesInMessage) + " more";
-  return text;
-}
-
-/// A suspect bends the residuals of all others: what is shown, and what it is compared with, is the fit without it.
-bool is_in_fit(const GeorefPoint& point) { return is_in_fit(point.verdict); }
 
 std::vector<PointPair> pairs_of(const std::vector<GeorefPoint>& points) {
   std::vector<PointPair> pairs;
   for (const GeorefPoint& point : points) {
-    if (is_in_fit(point)) pairs.push_back(point.pair);
+    if (is_in_fit(point.verdict)) pairs.push_back(point.pair);
   }
   return pairs;
 }
 
-std::vector<std::string> names_with(const std::vector<GeorefPoint>& points, PointVerdict verdict) {
+template <typename Predicate>
+std::vector<std::string> names_where(const std::vector<GeorefPoint>& points, const Predicate& holds) {
   std::vector<std::string> names;
   for (const GeorefPoint& point : points) {
-    if (point.verdict == verdict) names.push_back(point.name);
-  }
-  return names;
-}
-
-std::vector<std::string> names_outside(const std::vector<GeorefPoint>& points) {
-  std::vector<std::string> names;
-  for (const GeorefPoint& point : points) {
-    if (!is_in_fit(point)) names.push_back(point.name);
+    if (holds(point.verdict)) names.push_back(point.name);
   }
   return names;
 }
@@ -94,14 +76,12 @@ std::string worst_distance(const std::vector<GeorefPoint>& points) {
   return text;
 }
 
-bool all_agree(const Consensus& consensus, std::size_t num_pairs) { return consensus.num_inliers == num_pairs; }
-
 /// Marks what the consensus says of each point and returns why the fit must not be used as it is.
 std::string judge(const Consensus& consensus, const GeorefOptions& options, GeorefFit* fit) {
   const std::size_t count = fit->points.size();
-  if (all_agree(consensus, count)) return "";
+  if (consensus.num_inliers == count) return "";
   const std::vector<PointPair> pairs = pairs_of(fit->points);
-  const bool has_majority = consensus.num_inliers >= 3 && 2 * consensus.num_inliers > count;
+  const bool has_majority = consensus.has_majority();
   // First of all: some points agree with a wrong axis, too, for example those near one plane.
   const std::string axes = explain_misfit(pairs, consensus.num_inliers, options.tolerance_m, options.up_map);
   if (!axes.empty() || !has_majority || consensus.is_ambiguous) {
@@ -111,7 +91,7 @@ std::string judge(const Consensus& consensus, const GeorefOptions& options, Geor
     }
     if (!axes.empty()) return axes;
     return "the points contradict each other and it cannot be told which one is wrong: " + worst_distance(fit->points) + "; check " +
-           joined(names_with(fit->points, PointVerdict::kUnclear)) + " or add points";
+           joined(names_where(fit->points, [](PointVerdict v) { return v == PointVerdict::kUnclear; })) + " or add points";
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (consensus.is_inlier[i]) continue;
@@ -134,8 +114,8 @@ void compute(GeorefFit* fit) {
   std::size_t next = 0, num_determined = 0;
   for (GeorefPoint& point : fit->points) {
     point.residual_m = point.pair.p_a - fit->rigid.map(point.pair.p_b);
-    point.left_out = is_in_fit(point) ? left_out[next++] : predicted_residual(fit->rigid, point.pair);
-    if (is_in_fit(point) && point.left_out.is_determined) {
+    point.left_out = is_in_fit(point.verdict) ? left_out[next++] : predicted_residual(fit->rigid, point.pair);
+    if (is_in_fit(point.verdict) && point.left_out.is_determined) {
       sum_squared += point.left_out.error_m.squaredNorm();
       ++num_determined;
     }
@@ -176,6 +156,13 @@ void add_warnings(const GeorefOptions& options, GeorefFit* fit) {
 }
 
 }  // namespace
+
+std::string joined(const std::vector<std::string>& names, std::size_t most) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), most); ++i) text += (i > 0 ? ", " : "") + names[i];
+  if (names.size() > most) text += " and " + std::to_string(names.size() - most) + " more";
+  return text;
+}
 
 bool is_in_fit(PointVerdict verdict) { return verdict != PointVerdict::kExcluded && verdict != PointVerdict::kSuspect; }
 
@@ -218,12 +205,14 @@ GeorefFit fit_georef(std::vector<GeorefPoint> points, const GeorefOptions& optio
     // The points that agree may be too few, or on a line.
     fit.problem = explain_rank(pairs_of(fit.points));
     if (!fit.problem.empty()) {
-      fit.problem = "without the suspects " + joined(names_outside(fit.points)) + ": " + fit.problem;
+      fit.problem =
+          "without the suspects " + joined(names_where(fit.points, [](PointVerdict v) { return !is_in_fit(v); })) + ": " + fit.problem;
       return fit;
     }
   }
   compute(&fit);
-  if (!names_with(fit.points, PointVerdict::kSuspect).empty()) fit.problem = explain_suspects(fit);
+  const auto is_suspect = [](const GeorefPoint& point) { return point.verdict == PointVerdict::kSuspect; };
+  if (std::any_of(fit.points.begin(), fit.points.end(), is_suspect)) fit.problem = explain_suspects(fit);
   if (!fit.problem.empty()) return fit;
   if (options.up_map) fit.problem = explain_upside_down(pairs_of(fit.points), fit.rigid, *options.up_map);
   add_warnings(options, &fit);

@@ -22,7 +22,9 @@ enum class PointVerdict {
   kUnclear,   ///< something is wrong, and it may be this one
   kExcluded,  ///< a suspect, left out because the user said so
 };
-/// False for suspects and excluded points.
+/// "A, B, C and 5 more": `most` of the names.
+[[nodiscard]] std::string joined(const std::vector<std::string>& names, std::size_t most = 8);
+/// False for suspects, which bend the residuals of all others, and excluded points.
 [[nodiscard]] bool is_in_fit(PointVerdict verdict);
 [[nodiscard]] const char* to_string(PointVerdict verdict);
 

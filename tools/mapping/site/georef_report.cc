@@ -32,12 +32,6 @@ DatumSigmas sigmas_of(const GeorefFit& fit) {
   return {std::sqrt(fit.covariance_factor / weight), std::sqrt(turn_variance)};
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 void append_point(const GeorefPoint& point, int name_columns, std::string* text) {
   const Eigen::Vector3d& d = point.residual_m;
   append_text(text, "%-*.*s %8.3f %8.3f %8.3f %8.3f %7.3f ", name_columns, name_columns, point.name.c_str(), d.x(), d.y(), d.z(), d.norm(),
@@ -86,8 +80,7 @@ void append_fit(const GeorefFit& fit, std::string* text) {
 }
 
 void append_line(const char* label, const std::string& content, std::string* text) {
-  if (!content.empty())
-    *text += std::string(label) + std::string(14 - std::min<std::size_t>(13, std::string(label).size()), ' ') + content + "\n";
+  if (!content.empty()) *text += tools::text_of("%-13s ", label) + content + "\n";
 }
 
 Json point_json(const GeorefPoint& point) {
@@ -130,8 +123,8 @@ std::string format_table(const GeorefSummary& s) {
     append_fit(s.fit, &text);
   }
   for (const std::string& left_out : s.left_out) append_line("left out", left_out, &text);
-  append_line("not observed", joined(s.only_in_points), &text);
-  append_line("not surveyed", joined(s.only_in_observed), &text);
+  append_line("not observed", joined(s.only_in_points, s.only_in_points.size()), &text);
+  append_line("not surveyed", joined(s.only_in_observed, s.only_in_observed.size()), &text);
   for (const std::string& warning : s.fit.warnings) append_line("WARNING", warning, &text);
   if (s.is_written) append_line("written", s.out_path + (s.has_replaced_datum ? " (its older datum is replaced)" : ""), &text);
   return text;
