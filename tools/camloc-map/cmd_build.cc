@@ -55,11 +55,6 @@ Status check_arguments(const BuildArguments& arguments) {
   return Status::ok();
 }
 
-Status build(const BuildRequest& request, BuildSummary* summary) {
-  tools::TerminalObserver observer;
-  return build_map(request, observer, summary);
-}
-
 int run(BuildArguments arguments) {
   BuildRequest& request = arguments.request;
   const auto camera = read_camera_file(arguments.camera_path);
@@ -67,7 +62,8 @@ int run(BuildArguments arguments) {
   request.camera = camera.value();
   if (const Status checked = check_arguments(arguments); !checked.is_ok()) return report_error(checked, 2);
   BuildSummary summary;
-  if (const Status built = build(request, &summary); !built.is_ok()) { return report(built); }
+  const Status built = build_map(request, *std::make_unique<tools::TerminalObserver>(), &summary);  // its line ends before the report
+  if (!built.is_ok()) return report(built);
   if (summary.reading.num_corrupt > 0) {
     tools::print_error("camloc-map", std::to_string(summary.reading.num_corrupt) + " of " + std::to_string(summary.num_selected) +
                                          " frames left out because they could not be read, the first: " + summary.reading.first_corrupt);

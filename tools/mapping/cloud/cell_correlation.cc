@@ -12,7 +12,7 @@ constexpr int kBorder = 1;  // cells beside the outermost ones
 
 struct Scored {
   std::uint16_t score;
-  std::array<int, 3> cell;
+  Eigen::Array3i cell;
 };
 
 }  // namespace
@@ -23,29 +23,26 @@ CellGrid::CellGrid(const std::vector<Eigen::Vector3d>& points_m, double cell_m, 
   for (const Eigen::Vector3d& p : points_m) low_m_ = low_m_.cwiseMin(p), high = high.cwiseMax(p);
   const auto cells_at = [&](double edge_m) { return (((high - low_m_) / edge_m).array().floor() + 1 + 2 * kBorder).eval(); };
   while (cells_at(cell_m_).prod() > static_cast<double>(max_cells)) cell_m_ *= 1.25;
-  for (int axis = 0; axis < 3; ++axis) size_[static_cast<std::size_t>(axis)] = static_cast<int>(cells_at(cell_m_)[axis]);
+  size_ = cells_at(cell_m_).cast<int>();
   low_m_.array() -= kBorder * cell_m_;
-  const auto at = [&](int x, int y, int z) -> std::uint8_t& {
-    return cells_[(static_cast<std::size_t>(z) * static_cast<std::size_t>(size_[1]) + static_cast<std::size_t>(y)) *
-                      static_cast<std::size_t>(size_[0]) +
-                  static_cast<std::size_t>(x)];
+  cells_.assign(size_.cast<std::size_t>().prod(), 0);
+  const auto at = [&](const Eigen::Vector3i& cell) -> std::uint8_t& {
+    const auto c = cell.cast<std::size_t>().eval(), size = size_.matrix().cast<std::size_t>().eval();
+    return cells_[(c.z() * size.y() + c.y()) * size.x() + c.x()];
   };
-  cells_.assign(static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1]) * static_cast<std::size_t>(size_[2]), 0);
   for (const Eigen::Vector3d& p : points_m) {
     const Eigen::Vector3i cell = ((p - low_m_) / cell_m_).array().floor().cast<int>();
-    at(cell.x(), cell.y(), cell.z()) = 2;
+    at(cell) = 2;
     for (int axis = 0; axis < 3; ++axis) {
       for (const int side : {-1, 1}) {
-        const Eigen::Vector3i beside = cell + side * Eigen::Vector3i::Unit(axis);
-        std::uint8_t& value = at(beside.x(), beside.y(), beside.z());
+        std::uint8_t& value = at(cell + side * Eigen::Vector3i::Unit(axis));
         value = std::max<std::uint8_t>(value, 1);
       }
     }
   }
 }
 
-void CellGrid::score_row(const std::vector<std::array<int, 3>>& points, int ty, int tz, int first_x,
-                         std::vector<std::uint16_t>* scores) const {
+void CellGrid::score_row(const std::vector<Eigen::Array3i>& points, int ty, int tz, int first_x, std::vector<std::uint16_t>* scores) const {
   std::fill(scores->begin(), scores->end(), std::uint16_t{0});
   const int num_x = static_cast<int>(scores->size());
   for (const auto& point : points) {
@@ -63,15 +60,13 @@ std::vector<CellGrid::Place> CellGrid::best_places(const std::vector<Eigen::Vect
   if (points_m.empty() || points_m.size() > 30000) return {};  // two a point fit 16 bits
   Eigen::Vector3d low = points_m.front(), high = low;
   for (const Eigen::Vector3d& p : points_m) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  std::vector<std::array<int, 3>> points;
-  std::array<int, 3> extent{};
+  std::vector<Eigen::Array3i> points;
+  Eigen::Array3i extent = Eigen::Array3i::Zero();
   for (const Eigen::Vector3d& p : points_m) {
-    const Eigen::Vector3i cell = ((p - low) / cell_m_).array().floor().cast<int>();
-    points.push_back({cell.x(), cell.y(), cell.z()});
-    for (std::size_t axis = 0; axis < 3; ++axis) extent[axis] = std::max(extent[axis], points.back()[axis] + 1);
+    points.push_back(((p - low) / cell_m_).array().floor().cast<int>());
+    extent = extent.max(points.back() + 1);
   }
-  std::array<int, 3> first{}, last{};
-  for (std::size_t axis = 0; axis < 3; ++axis) first[axis] = -extent[axis] / 2, last[axis] = size_[axis] - extent[axis] + extent[axis] / 2;
+  const Eigen::Array3i first = -extent / 2, last = size_ - extent + extent / 2;
   std::vector<std::uint16_t> scores(static_cast<std::size_t>(std::max(0, last[0] - first[0] + 1)));
   std::vector<Scored> best;
   for (int tz = first[2]; tz <= last[2]; ++tz) {
@@ -83,15 +78,13 @@ std::vector<CellGrid::Place> CellGrid::best_places(const std::vector<Eigen::Vect
   }
   std::stable_sort(best.begin(), best.end(), [](const Scored& a, const Scored& b) { return a.score > b.score; });
   std::vector<Place> places;
-  std::vector<std::array<int, 3>> taken;
+  std::vector<Eigen::Array3i> taken;
   for (const Scored& scored : best) {
-    const auto is_near = [&](const std::array<int, 3>& other) {
-      return std::abs(other[0] - scored.cell[0]) < 3 && std::abs(other[1] - scored.cell[1]) < 3 && std::abs(other[2] - scored.cell[2]) < 3;
-    };
+    const auto is_near = [&](const Eigen::Array3i& other) { return (other - scored.cell).abs().maxCoeff() < 3; };
     if (std::any_of(taken.begin(), taken.end(), is_near)) continue;
     taken.push_back(scored.cell);
-    const Eigen::Vector3d cell(scored.cell[0], scored.cell[1], scored.cell[2]);
-    places.push_back({low_m_ + cell_m_ * cell - low, static_cast<double>(scored.score) / (2.0 * static_cast<double>(points.size()))});
+    places.push_back({low_m_ + cell_m_ * scored.cell.matrix().cast<double>() - low,
+                      static_cast<double>(scored.score) / (2.0 * static_cast<double>(points.size()))});
     if (places.size() >= max_places) break;
   }
   return places;

@@ -3,6 +3,7 @@
 #include "tools/mapping/cloud/cloud_distance.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -15,27 +16,6 @@ namespace {
 constexpr double kCellM = 0.25;     // edge of the cells in which coverage is counted
 constexpr double kCoveredM = 0.25;  // a cell is covered when a landmark is this close to it
 constexpr double kViewRangeM = 5;   // only what is this close to a keyframe can be expected in the map
-
-struct Box {
-  Eigen::Vector3d low, high;
-  [[nodiscard]] bool contains(const Eigen::Vector3d& p, double margin_m) const {
-    return ((p - low).array() >= -margin_m).all() && ((high - p).array() >= -margin_m).all();
-  }
-};
-
-template <typename Points>
-Box box_of(const Points& points) {
-  Box box{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  if (points.empty()) return box;
-  std::vector<float> values(points.size());
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < points.size(); ++i) values[i] = static_cast<float>(points[i][axis]);
-    const auto [low, high] = trimmed_range(values, 100);
-    box.low[axis] = static_cast<double>(low);
-    box.high[axis] = static_cast<double>(high);
-  }
-  return box;
-}
 
 void measure_landmarks(std::span<const Eigen::Vector3d> landmarks_m, CloudIndex* cloud, double max_distance_m, CloudDistances* result) {
   std::vector<float> near_m, plane_m;
@@ -59,14 +39,14 @@ void measure_landmarks(std::span<const Eigen::Vector3d> landmarks_m, CloudIndex*
 }
 
 void measure_coverage(std::span<const Eigen::Vector3d> landmarks_m, std::span<const Eigen::Vector3d> keyframes_m, const CloudIndex& cloud,
-                      const Box& map_box, CloudDistances* result) {
+                      const std::array<Eigen::Vector3d, 2>& map_box, CloudDistances* result) {
   const PointCloud cells = thinned(cloud.points_m(), kCellM);
   const std::vector<Eigen::Vector3f> landmarks = to_float(landmarks_m), keyframes = to_float(keyframes_m);
   const CloudIndex landmark_index(landmarks), keyframe_index(keyframes);
   std::vector<float> distances_m;
   for (const Eigen::Vector3f& cell : cells.points_m) {
     const Eigen::Vector3d p = cells.origin_m + cell.cast<double>();
-    if (!map_box.contains(p, kCoveredM)) continue;
+    if (((p - map_box[0]).array() < -kCoveredM).any() || ((map_box[1] - p).array() < -kCoveredM).any()) continue;
     if (!keyframes.empty() && !keyframe_index.nearest(p, kViewRangeM)) continue;
     const auto neighbor = landmark_index.nearest(p, std::numeric_limits<double>::max());
     if (neighbor) distances_m.push_back(static_cast<float>(neighbor->distance_m));
@@ -114,9 +94,9 @@ CloudDistances measure_distances(std::span<const Eigen::Vector3d> landmarks_m, s
                                  CloudIndex* cloud, double max_distance_m) {
   CloudDistances result;
   measure_landmarks(landmarks_m, cloud, max_distance_m, &result);
-  const Box map_box = box_of(landmarks_m), cloud_box = box_of(cloud->points_m());
-  result.map_extent_m = map_box.high - map_box.low;
-  result.cloud_extent_m = cloud_box.high - cloud_box.low;
+  const auto map_box = trimmed_bounds(landmarks_m, 100), cloud_box = trimmed_bounds(cloud->points_m(), 100);
+  result.map_extent_m = map_box[1] - map_box[0];
+  result.cloud_extent_m = cloud_box[1] - cloud_box[0];
   measure_coverage(landmarks_m, keyframes_m, *cloud, map_box, &result);
   return result;
 }

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -66,11 +65,11 @@ class CellGrid {
 
  private:
   /// Scores of all x at one row of translations; `points` are cells relative to their lower corner.
-  void score_row(const std::vector<std::array<int, 3>>& points, int ty, int tz, int first_x, std::vector<std::uint16_t>* scores) const;
+  void score_row(const std::vector<Eigen::Array3i>& points, int ty, int tz, int first_x, std::vector<std::uint16_t>* scores) const;
 
   double cell_m_ = 0;
   Eigen::Vector3d low_m_ = Eigen::Vector3d::Zero();
-  std::array<int, 3> size_{};
+  Eigen::Array3i size_ = Eigen::Array3i::Zero();
   std::vector<std::uint8_t> cells_;  ///< 2 occupied, 1 beside one, x fastest
 };
 

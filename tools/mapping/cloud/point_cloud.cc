@@ -20,17 +20,7 @@ constexpr std::size_t kMaxPercentileSamples = 200000;
 }  // namespace
 
 std::array<Eigen::Vector3d, 2> PointCloud::bounds_m() const {
-  std::array<Eigen::Vector3d, 2> bounds{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  if (points_m.empty()) return bounds;
-  const std::size_t step = points_m.size() / kMaxPercentileSamples + 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<float> values;
-    for (std::size_t i = 0; i < points_m.size(); i += step) values.push_back(points_m[i][axis]);
-    const auto [low, high] = trimmed_range(std::move(values), 200);
-    bounds[0][axis] = static_cast<double>(low);
-    bounds[1][axis] = static_cast<double>(high);
-  }
-  return bounds;
+  return trimmed_bounds(points_m, 200, points_m.size() / kMaxPercentileSamples + 1);
 }
 
 std::vector<Eigen::Vector3d> chosen_evenly(std::span<const Eigen::Vector3d> points, std::size_t max_points) {

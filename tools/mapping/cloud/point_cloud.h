@@ -12,8 +12,10 @@
 #include <istream>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "core/base/order_statistics.h"
 #include "core/base/result.h"
 #include "core/base/work_observer.h"
 
@@ -73,6 +75,18 @@ template <typename Points>
   CloudAccumulator accumulator({cell_m, 1, 1});
   for (const auto& p : points_m) accumulator.add(p.template cast<double>());
   return accumulator.finish();
+}
+
+/// The corners of a box around `points`, every `step`-th of which is asked, without one part in `parts` at each end of each axis.
+template <typename Points>
+[[nodiscard]] std::array<Eigen::Vector3d, 2> trimmed_bounds(const Points& points, std::size_t parts, std::size_t step = 1) {
+  std::array<Eigen::Vector3d, 2> bounds{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<float> values;
+    for (std::size_t i = 0; i < points.size(); i += step) values.push_back(static_cast<float>(points[i][axis]));
+    std::tie(bounds[0][axis], bounds[1][axis]) = trimmed_range(std::move(values), parts);
+  }
+  return bounds;
 }
 
 /// At most `max_points`, evenly by their order.

@@ -205,15 +205,9 @@ void measure_residuals(const EvaluationInput& input, const Rigid3& T_cloud_map, 
 }  // namespace
 
 const char* describe(AlignStart start) {
-  switch (start) {
-    case AlignStart::kAuto: return "automatic";
-    case AlignStart::kPoints: return "control points";
-    case AlignStart::kTrajectory: return "trajectory";
-    case AlignStart::kDatum: return "datum of the map";
-    case AlignStart::kNone: return "none (frames taken as equal)";
-    case AlignStart::kSearch: return "search";
-  }
-  return "";
+  constexpr const char* kNames[] = {"automatic", "control points", "trajectory", "datum of the map", "none (frames taken as equal)",
+                                    "search"};
+  return kNames[static_cast<std::size_t>(start)];
 }
 
 Result<Evaluation> evaluate_map(const EvaluationInput& input, const EvaluationOptions& options, WorkObserver& observer) {

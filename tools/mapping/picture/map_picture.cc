@@ -283,12 +283,8 @@ std::string title_of(const MapInfo& info) {
 }  // namespace
 
 Rgb color_of(FixOutlook outlook) {
-  switch (outlook) {
-    case FixOutlook::kLikely: return {86, 180, 233};
-    case FixOutlook::kLookAlike: return {230, 159, 0};
-    case FixOutlook::kScanAgain: return {150, 40, 90};
-  }
-  return kInk;
+  constexpr Rgb kColors[] = {{86, 180, 233}, {230, 159, 0}, {150, 40, 90}};
+  return kColors[static_cast<std::size_t>(outlook)];
 }
 
 ColorImage draw_map(const MapPicture& picture, MapPanel panel, int width_px) {

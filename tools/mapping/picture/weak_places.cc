@@ -54,12 +54,8 @@ std::string format_share(const std::vector<KeyframeLocalizability>& places, FixO
 }  // namespace
 
 const char* words_for(FixOutlook outlook) {
-  switch (outlook) {
-    case FixOutlook::kLikely: return "a fix is likely";
-    case FixOutlook::kLookAlike: return "look-alike of another place";
-    case FixOutlook::kScanAgain: return "scan again";
-  }
-  return "";
+  constexpr const char* kWords[] = {"a fix is likely", "look-alike of another place", "scan again"};
+  return kWords[static_cast<std::size_t>(outlook)];
 }
 
 std::vector<WeakPlace> find_weak_places(const MapView& map, const std::vector<KeyframeLocalizability>& places, std::size_t max_each) {

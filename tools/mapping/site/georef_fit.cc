@@ -167,14 +167,8 @@ std::string joined(const std::vector<std::string>& names, std::size_t most) {
 bool is_in_fit(PointVerdict verdict) { return verdict != PointVerdict::kExcluded && verdict != PointVerdict::kSuspect; }
 
 const char* to_string(PointVerdict verdict) {
-  switch (verdict) {
-    case PointVerdict::kGood: return "good";
-    case PointVerdict::kHigh: return "high";
-    case PointVerdict::kSuspect: return "SUSPECT";
-    case PointVerdict::kUnclear: return "UNCLEAR";
-    case PointVerdict::kExcluded: return "excluded";
-  }
-  return "unknown";
+  constexpr const char* kWords[] = {"good", "high", "SUSPECT", "UNCLEAR", "excluded"};
+  return kWords[static_cast<std::size_t>(verdict)];
 }
 
 std::vector<GeorefPoint> match_points(const std::vector<ControlPoint>& points, const std::vector<ObservedPoint>& observed) {
