@@ -107,7 +107,6 @@ Status build_from_poses(const BuildRequest& request, WorkObserver& observer, Bui
 
 // --- SLAM finds the poses --------------------------------------------------------------------------------------------
 
-/// A recording on its way to a map.
 struct TrackedRecording {
   SelectedFrames frames;
   TrackingRequest pass;
@@ -167,7 +166,6 @@ Status find_poses(const BuildRequest& request, Slam* slam, TrackedRecording* rec
   return Status::ok();
 }
 
-/// Site coordinates from control points; else z up, where something says which way that is.
 Status place_recording(const BuildRequest& request, Slam* slam, TrackedRecording* recording, BuildSummary* summary) {
   if (recording->survey) {
     summary->survey = GeorefSummary{};

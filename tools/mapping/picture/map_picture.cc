@@ -124,7 +124,6 @@ void draw_wedges(const Scene& scene, const Viewpoint& view, FixOutlook outlook, 
   raster->add_points(view, points, color_of(outlook), 0.5);
 }
 
-/// Where no keyframe is near.
 void draw_bare_trajectory(const Scene& scene, const Viewpoint& view, PointRaster* raster) {
   const std::vector<Rigid3>& poses = scene.picture->trajectory;
   for (std::size_t i = 1; i < poses.size(); ++i) {
@@ -243,7 +242,6 @@ int height_for(const Plan& plan, int width, int least) {
   return std::max(least, std::min(3 * width / 4, static_cast<int>(inner) + 2 * kPanelMarginPx + 20));
 }
 
-/// The coverage with its list beside it.
 ColorImage draw_coverage_row(const Scene& scene, const Plan& plan, int width) {
   const int list_width = std::clamp(width / 3, 340, 500), map_width = std::max(1, width - list_width - kMarginPx);
   const int height = height_for(plan, map_width, kListHeightPx);
@@ -253,7 +251,6 @@ ColorImage draw_coverage_row(const Scene& scene, const Plan& plan, int width) {
   return row;
 }
 
-/// Plan and perspective side by side.
 ColorImage draw_view_row(const Scene& scene, const Plan& plan, int width) {
   const int half = (width - kMarginPx) / 2, height = height_for(plan, half, half / 2);
   ColorImage row = tools::blank_image(width, height, kBackground);

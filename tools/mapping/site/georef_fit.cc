@@ -100,7 +100,6 @@ std::string judge(const Consensus& consensus, const GeorefOptions& options, Geor
   return "";
 }
 
-/// The fit over the points that are in it, and what it says of every point.
 void compute(GeorefFit* fit) {
   const std::vector<PointPair> pairs = pairs_of(fit->points);
   fit->rigid = align_rigid(pairs);
