@@ -37,9 +37,8 @@ Status show(const MapView& map, const ViewArguments& arguments) {
   }
   const ColorImage image = draw_map(picture, arguments.panel, arguments.width_px);
   if (const Status written = write_png(arguments.png_path, image); !written.is_ok()) return written;
-  const std::string table = format_places(map, picture.places, picture.weak);
-  const bool is_said = tools::print_text(table);
-  return is_said ? Status::ok() : Status(ErrorCode::kIo, "cannot write to standard output");
+  return tools::print_text(format_places(map, picture.places, picture.weak)) ? Status::ok()
+                                                                             : Status(ErrorCode::kIo, "cannot write to standard output");
 }
 
 int run(const ViewArguments& arguments) {

@@ -70,24 +70,18 @@ void append_weak_spots(const std::vector<WeakSpot>& all, std::string* text) {
 
 Json slam_json(const SlamSummary& slam) {
   const SlamCounts& c = slam.counts;
-  Json json;
-  json["views"] = c.num_views;
-  json["lost"] = c.num_lost;
-  json["losses"] = c.num_losses;
-  json["bridged"] = c.num_bridged;
-  json["keyframes"] = c.num_keyframes;
-  json["landmarks"] = c.num_landmarks;
+  Json json{{"views", c.num_views},     {"lost", c.num_lost},           {"losses", c.num_losses},
+            {"bridged", c.num_bridged}, {"keyframes", c.num_keyframes}, {"landmarks", c.num_landmarks}};
   json["loops"] = {{"closed", c.num_loops}, {"refused", c.num_loops_refused}};
   json["segments"] = {{"begun", c.num_segments}, {"joined", c.num_joined}};
   json["reprojection_error_px"] = {{"median", slam.fit.median_px}, {"p90", slam.fit.p90_px}};
   json["depth_error_m"] = {{"median", slam.fit.median_depth_m}};
   json["stamp_jumps"] = slam.num_stamp_jumps;
   json["resumed_views"] = slam.num_resumed;
+  json["up"] = nullptr;
   if (slam.up)
     json["up"] = {{"source", slam.up->source == GravitySource::kFloor ? "floor" : "accelerometer"},
                   {"sigma_deg", degrees(slam.up->sigma_rad)}};
-  else
-    json["up"] = nullptr;
   json["weak_spots"] = Json::array();
   for (const WeakSpot& w : slam.weak_spots)
     json["weak_spots"].push_back({{"first_frame", w.first_frame}, {"last_frame", w.last_frame}, {"what", w.what}, {"advice", w.advice}});
@@ -132,10 +126,7 @@ std::string format_table(const BuildSummary& s) {
 
 std::string format_json(const BuildSummary& s) {
   const MapBuildReport& b = s.build;
-  Json json;
-  json["map"] = s.map_path;
-  json["sequence"] = s.sequence;
-  json["camera"] = s.camera;
+  Json json{{"map", s.map_path}, {"sequence", s.sequence}, {"camera", s.camera}};
   json["frames"] = {{"recorded", s.num_recorded},         {"selected", s.num_selected},           {"used", b.num_frames},
                     {"without_pose", s.num_without_pose}, {"without_depth", s.num_without_depth}, {"broken", s.reading.num_corrupt}};
   json["is_partial"] = s.is_partial;

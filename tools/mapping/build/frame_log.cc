@@ -58,10 +58,17 @@ const char* get(const char* from, std::size_t count, std::vector<T>* values) {
   return from + count * sizeof(T);
 }
 
-std::size_t array_bytes(const RecordHeader& header) {
-  const std::size_t per_feature = sizeof(PackedKeypoint) + sizeof(Descriptor) + sizeof(Eigen::Vector2f) + sizeof(float);
-  return header.num_features * per_feature + header.num_surface * sizeof(Eigen::Vector3f) + header.num_patches * sizeof(FeaturePatch) +
-         header.num_cells * 2 * sizeof(std::uint16_t);
+/// The arrays of a record in the order of the file: `take` gets each with its number of elements.
+template <typename Logged, typename Keypoints, typename Take>
+void for_each_array(Logged& logged, Keypoints& keypoints, const RecordHeader& header, const Take& take) {
+  take(keypoints, header.num_features);
+  take(logged.view.features.descriptors, header.num_features);
+  take(logged.view.normalized, header.num_features);
+  take(logged.view.depth_m, header.num_features);
+  take(logged.surface_m, header.num_surface);
+  take(logged.view.patches, header.num_patches);
+  take(logged.thumbnail.grey, header.num_cells);
+  take(logged.thumbnail.depth, header.num_cells);
 }
 
 std::uint64_t hash_of(RecordHeader header, const std::vector<char>& bytes) {
@@ -105,15 +112,6 @@ Status FrameLogWriter::add(const LoggedFrame& logged) {
   std::vector<PackedKeypoint> keypoints;
   keypoints.reserve(view.size());
   for (const Keypoint& k : view.features.keypoints) keypoints.push_back({k.u, k.v, k.angle_rad, k.response, k.level});
-  bytes_.clear();
-  put(keypoints, &bytes_);
-  put(view.features.descriptors, &bytes_);
-  put(view.normalized, &bytes_);
-  put(view.depth_m, &bytes_);
-  put(logged.surface_m, &bytes_);
-  put(view.patches, &bytes_);
-  put(logged.thumbnail.grey, &bytes_);
-  put(logged.thumbnail.depth, &bytes_);
   RecordHeader header;
   header.frame = logged.frame;
   header.stamp_ns = view.stamp_ns;
@@ -123,6 +121,8 @@ Status FrameLogWriter::add(const LoggedFrame& logged) {
   header.num_cells = static_cast<std::uint32_t>(logged.thumbnail.grey.size());
   header.thumbnail_width = static_cast<std::uint16_t>(logged.thumbnail.width);
   header.cell_px = static_cast<std::uint16_t>(logged.thumbnail.cell_px);
+  bytes_.clear();
+  for_each_array(logged, keypoints, header, [this](const auto& values, std::size_t) { put(values, &bytes_); });
   header.hash = hash_of(header, bytes_);
   errno = 0;
   file_.write(reinterpret_cast<const char*>(&header), sizeof header);
@@ -163,7 +163,9 @@ Status FrameLogReader::next(LoggedFrame* logged) {
   if (header.num_cells > kMaxCells ||
       (header.num_cells > 0 && (header.thumbnail_width == 0 || header.num_cells % header.thumbnail_width != 0)))
     return end;
-  const std::size_t size = array_bytes(header);
+  std::vector<PackedKeypoint> keypoints;
+  std::size_t size = 0;
+  for_each_array(*logged, keypoints, header, [&](const auto& values, std::size_t count) { size += count * sizeof values[0]; });
   if (position_ + sizeof header + size > file_bytes_) return end;
   bytes_.resize(size);
   file_.read(bytes_.data(), static_cast<std::streamsize>(size));
@@ -172,16 +174,9 @@ Status FrameLogReader::next(LoggedFrame* logged) {
   if (!file_ || hash_of(header, bytes_) != expected) return end;
   position_ += sizeof header + size;
 
-  std::vector<PackedKeypoint> keypoints;
   FrameFeatures& view = logged->view;
-  const char* from = get(bytes_.data(), header.num_features, &keypoints);
-  from = get(from, header.num_features, &view.features.descriptors);
-  from = get(from, header.num_features, &view.normalized);
-  from = get(from, header.num_features, &view.depth_m);
-  from = get(from, header.num_surface, &logged->surface_m);
-  from = get(from, header.num_patches, &view.patches);
-  from = get(from, header.num_cells, &logged->thumbnail.grey);
-  get(from, header.num_cells, &logged->thumbnail.depth);
+  const char* from = bytes_.data();
+  for_each_array(*logged, keypoints, header, [&from](auto& values, std::size_t count) { from = get(from, count, &values); });
   logged->thumbnail.width = header.thumbnail_width;
   logged->thumbnail.height = header.num_cells > 0 ? static_cast<int>(header.num_cells / header.thumbnail_width) : 0;
   logged->thumbnail.cell_px = header.cell_px;

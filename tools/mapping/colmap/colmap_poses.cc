@@ -9,6 +9,7 @@
 #include "core/geometry/depth_registration.h"
 #include "core/io/image_file.h"
 #include "core/io/text.h"
+#include "tools/common/text_format.h"
 
 namespace camloc::mapping {
 namespace {
@@ -20,9 +21,9 @@ std::string file_name(const std::string& path) { return std::filesystem::path(pa
 Status check_image_sizes(const ColmapModel& model, const Intrinsics& color) {
   for (const ColmapCamera& camera : model.cameras) {
     if (camera.width == color.width && camera.height == color.height) continue;
-    return {ErrorCode::kInvalid, "camera " + std::to_string(camera.id) + " of the model takes images of " + std::to_string(camera.width) +
-                                     "x" + std::to_string(camera.height) + ", the camera file says " + std::to_string(color.width) + "x" +
-                                     std::to_string(color.height) + "; make the model from the recording's own images"};
+    return {ErrorCode::kInvalid, tools::text_of("camera %u of the model takes images of %dx%d, the camera file says %dx%d; "
+                                                "make the model from the recording's own images",
+                                                camera.id, camera.width, camera.height, color.width, color.height)};
   }
   return Status::ok();
 }
@@ -60,9 +61,8 @@ Result<std::vector<DepthPair>> measure_depths(const ColmapModel& model, const st
     const std::string& path = sequence.frames[frame_of_image[image]].depth_path;
     if (!reader.read_depth(path, &depth).is_ok()) continue;  // the build will count it as broken
     if (depth.width != camera.depth.width || depth.height != camera.depth.height) {
-      return {ErrorCode::kInvalid, path + ": is " + std::to_string(depth.width) + "x" + std::to_string(depth.height) +
-                                       ", the camera file says " + std::to_string(camera.depth.width) + "x" +
-                                       std::to_string(camera.depth.height)};
+      return {ErrorCode::kInvalid, path + tools::text_of(": is %dx%d, the camera file says %dx%d", depth.width, depth.height,
+                                                         camera.depth.width, camera.depth.height)};
     }
     append_pairs(model, image, camera.color, lookup, depth.view(), &pairs);
   }

@@ -48,11 +48,7 @@ class LineReader {
 
 /// Takes the next blank-separated field off the front; empty at the end.
 std::string_view take_field(std::string_view* text) {
-  const std::size_t begin = text->find_first_not_of(" \t");
-  if (begin == std::string_view::npos) {
-    *text = {};
-    return {};
-  }
+  const std::size_t begin = std::min(text->find_first_not_of(" \t"), text->size());
   const std::size_t end = std::min(text->find_first_of(" \t", begin), text->size());
   const std::string_view field = text->substr(begin, end - begin);
   text->remove_prefix(end);
@@ -89,22 +85,19 @@ Status read_cameras(const std::string& path, std::string_view text, ColmapModel*
   LineReader lines(text);
   for (TextLine line; lines.next_content(&line);) {
     std::string_view rest = line.text;
-    ColmapCamera camera;
     const auto id = take_id<std::uint32_t>(&rest);
-    camera.model = take_field(&rest);
+    const std::string lens(take_field(&rest));
     const auto width = take_id<std::uint16_t>(&rest), height = take_id<std::uint16_t>(&rest);
     if (!id || !width || !height || *width == 0 || *height == 0) {
       return line_error(path, line.number, "not CAMERA_ID MODEL WIDTH HEIGHT PARAMS: " + in_quotes(line.text));
     }
     if (!ids.insert(*id).second) return line_error(path, line.number, "camera " + std::to_string(*id) + " a second time");
+    ColmapCamera camera{*id, lens, *width, *height, {}};
     while (!trimmed(rest).empty()) {
       const auto parameter = take_finite(&rest);
       if (!parameter) return line_error(path, line.number, "a camera parameter is no number: " + in_quotes(line.text));
       camera.parameters.push_back(*parameter);
     }
-    camera.id = *id;
-    camera.width = *width;
-    camera.height = *height;
     model->cameras.push_back(std::move(camera));
   }
   return model->cameras.empty() ? Status(ErrorCode::kInvalid, path + ": holds no camera") : Status::ok();
@@ -133,19 +126,15 @@ Status read_points(const std::string& path, std::string_view text, ColmapModel* 
 }
 
 std::optional<ColmapImage> parse_image(std::string_view line) {
-  ColmapImage image;
   const auto id = take_id<std::uint32_t>(&line);
   const auto q = take_finites<4>(&line);
   const auto t = take_finites<3>(&line);
   const auto camera_id = take_id<std::uint32_t>(&line);
-  image.name = trimmed(line);  // the rest: a name may hold blanks
-  if (!id || !q || !t || !camera_id || image.name.empty()) return std::nullopt;
+  const std::string name(trimmed(line));  // the rest: a name may hold blanks
+  if (!id || !q || !t || !camera_id || name.empty()) return std::nullopt;
   const Eigen::Quaterniond rotation((*q)[0], (*q)[1], (*q)[2], (*q)[3]);
   if (std::abs(rotation.norm() - 1.0) > 0.01) return std::nullopt;
-  image.id = *id;
-  image.camera_id = *camera_id;
-  image.T_camera_world = {rotation.normalized(), Eigen::Vector3d((*t)[0], (*t)[1], (*t)[2])};
-  return image;
+  return ColmapImage{*id, *camera_id, {rotation.normalized(), Eigen::Vector3d((*t)[0], (*t)[1], (*t)[2])}, name, {}};
 }
 
 Status parse_observations(const std::string& path, const TextLine& line, const PointIndex& index_of, ColmapImage* image) {

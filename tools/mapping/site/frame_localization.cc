@@ -8,6 +8,7 @@
 #include "core/localize/localizer.h"
 #include "drivers/sources.h"
 #include "tools/common/frame_reading.h"
+#include "tools/common/text_format.h"
 #include "tools/mapping/site/control_points.h"
 
 namespace camloc::mapping {
@@ -19,9 +20,8 @@ using Frames = std::map<std::uint64_t, LocalizedFrame>;
 
 Status check_size(const FrameSourceInfo& info, const RgbdCamera& camera, const std::string& sequence_url) {
   if (info.color_width == camera.color.width && info.color_height == camera.color.height) return Status::ok();
-  return {ErrorCode::kInvalid, sequence_url + ": images of " + std::to_string(info.color_width) + "x" + std::to_string(info.color_height) +
-                                   ", but --camera is for " + std::to_string(camera.color.width) + "x" +
-                                   std::to_string(camera.color.height)};
+  return {ErrorCode::kInvalid, sequence_url + tools::text_of(": images of %dx%d, but --camera is for %dx%d", info.color_width,
+                                                             info.color_height, camera.color.width, camera.color.height)};
 }
 
 Result<PoseWithCovariance> pose_of(const Localization& localization) {

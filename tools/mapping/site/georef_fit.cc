@@ -177,11 +177,9 @@ std::vector<GeorefPoint> match_points(const std::vector<ControlPoint>& points, c
   for (const ControlPoint& point : points) {
     const auto found = by_name.find(point.name);
     if (found == by_name.end()) continue;
-    GeorefPoint& match = matched.emplace_back();
-    match.name = point.name;
-    match.pair = {point.p_wcs, found->second->p_map, std::hypot(point.sigma_m, found->second->sigma_m)};
-    match.num_measurements = found->second->num_measurements;
-    match.scatter_m = found->second->scatter_m;
+    const ObservedPoint& seen = *found->second;
+    const PointPair pair{point.p_wcs, seen.p_map, std::hypot(point.sigma_m, seen.sigma_m)};
+    matched.push_back({.name = point.name, .pair = pair, .num_measurements = seen.num_measurements, .scatter_m = seen.scatter_m});
   }
   return matched;
 }

@@ -84,14 +84,13 @@ void append_line(const char* label, const std::string& content, std::string* tex
 }
 
 Json point_json(const GeorefPoint& point) {
-  Json json;
-  json["name"] = point.name;
-  json["site_m"] = json_of(point.pair.p_a);
-  json["map_m"] = json_of(point.pair.p_b);
-  json["sigma_m"] = point.pair.sigma_m;
-  json["measurements"] = point.num_measurements;
-  json["scatter_m"] = point.scatter_m;
-  json["residual_m"] = json_of(point.residual_m);
+  Json json{{"name", point.name},
+            {"site_m", json_of(point.pair.p_a)},
+            {"map_m", json_of(point.pair.p_b)},
+            {"sigma_m", point.pair.sigma_m},
+            {"measurements", point.num_measurements},
+            {"scatter_m", point.scatter_m},
+            {"residual_m", json_of(point.residual_m)}};
   if (point.left_out.is_determined) {
     json["predicted_error_m"] = json_of(point.left_out.error_m);
     json["predicted_error_sigmas"] = point.left_out.sigmas();
@@ -131,11 +130,7 @@ std::string format_table(const GeorefSummary& s) {
 }
 
 std::string format_json(const GeorefSummary& s) {
-  Json json;
-  json["map"] = s.map_path;
-  json["points_file"] = s.points_path;
-  json["observed_file"] = s.observed_path;
-  json["points"] = Json::array();
+  Json json{{"map", s.map_path}, {"points_file", s.points_path}, {"observed_file", s.observed_path}, {"points", Json::array()}};
   if (s.fit.is_fitted) {
     for (const GeorefPoint& point : s.fit.points) json["points"].push_back(point_json(point));
     json["fit"] = fit_json(s.fit);
