@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/cloud/cloud_distance.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "tests/mapping/scanned_flat.h"
+#include "tools/mapping/cloud/cloud_registration.h"
 
 namespace camloc::mapping {
 namespace {

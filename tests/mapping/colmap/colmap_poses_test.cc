@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A recording with depth and a COLMAP model of its images in another scale and frame: the poses come out in metres.
-#include "tools/mapping/colmap/colmap_poses.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -11,6 +9,7 @@
 #include "core/io/image_writer.h"
 #include "tests/map/room_map.h"
 #include "tools/mapping/build/posed_frames.h"
+#include "tools/mapping/colmap/colmap_model.h"
 
 namespace camloc::mapping {
 namespace {

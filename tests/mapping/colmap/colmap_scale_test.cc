@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "tests/map/synthetic_map.h"
-#include "tools/mapping/colmap/colmap_poses.h"
+#include "tools/mapping/colmap/colmap_model.h"
 
 namespace camloc::mapping {
 namespace {

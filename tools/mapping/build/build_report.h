@@ -16,7 +16,7 @@
 #include "tools/common/frame_reading.h"
 #include "tools/mapping/build/merge_pipeline.h"
 #include "tools/mapping/build/recording_tracking.h"
-#include "tools/mapping/colmap/colmap_poses.h"
+#include "tools/mapping/colmap/colmap_model.h"
 #include "tools/mapping/site/georef_fit.h"
 
 namespace camloc::mapping {

@@ -7,7 +7,7 @@
 
 #include "core/io/frame_selection.h"
 #include "core/io/sequence.h"
-#include "tools/mapping/colmap/colmap_poses.h"
+#include "tools/mapping/colmap/colmap_model.h"
 
 namespace camloc::mapping {
 namespace {

@@ -12,7 +12,7 @@
 #include "core/base/result.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
-#include "tools/mapping/colmap/colmap_poses.h"
+#include "tools/mapping/colmap/colmap_model.h"
 
 namespace camloc::mapping {
 

@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/cloud/cloud_distance.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "core/base/order_statistics.h"
+#include "tools/mapping/cloud/cloud_registration.h"
 #include "tools/mapping/cloud/point_cloud.h"
 
 namespace camloc::mapping {

@@ -156,34 +156,25 @@ bool parse_ascii_element(std::string_view line, const Element& element, std::vec
   return true;
 }
 
-Status read_vertices(CloudInput* input, const Element& element, const Header& header, const std::array<std::size_t, 3>& axes,
-                     CloudAccumulator* cloud) {
+/// Adds the points of vertices, whose coordinates stand at `axes`; other elements have none and are skipped.
+Status read_element(CloudInput* input, const Element& element, const Header& header, const std::optional<std::array<std::size_t, 3>>& axes,
+                    CloudAccumulator* cloud) {
+  if (element.properties.empty()) return Status::ok();
   std::vector<double> values(element.properties.size());
   for (std::uint64_t i = 0; i < element.count;) {
     if (header.is_ascii) {
       const auto line = input->read_line();
       if (!line) return cut_off(*input, element, i);
-      if (trimmed(*line).empty()) continue;
-      if (!parse_ascii_element(*line, element, &values)) {
+      if (axes && trimmed(*line).empty()) continue;
+      if (axes && !parse_ascii_element(*line, element, &values)) {
         return input->error(ErrorCode::kCorrupt, "vertex " + std::to_string(i) + " is no line of " + std::to_string(values.size()) +
                                                      " numbers: " + in_quotes(trimmed(*line)));
       }
     } else if (!read_binary_element(input, element, header.is_big_endian, &values)) {
       return cut_off(*input, element, i);
     }
-    cloud->add({values[axes[0]], values[axes[1]], values[axes[2]]});
+    if (axes) cloud->add({values[(*axes)[0]], values[(*axes)[1]], values[(*axes)[2]]});
     ++i;
-  }
-  return Status::ok();
-}
-
-Status skip_element(CloudInput* input, const Element& element, const Header& header) {
-  std::vector<double> values(element.properties.size());
-  if (element.properties.empty()) return Status::ok();
-  for (std::uint64_t i = 0; i < element.count; ++i) {
-    const bool is_there =
-        header.is_ascii ? input->read_line().has_value() : read_binary_element(input, element, header.is_big_endian, &values);
-    if (!is_there) return cut_off(*input, element, i);
   }
   return Status::ok();
 }
@@ -201,13 +192,10 @@ Status read_ply(CloudInput* input, CloudAccumulator* cloud) {
       return input->truncated("the header promises " + std::to_string(element.count) + " of element '" + element.name +
                               "', which do not fit into " + std::to_string(input->remaining()) + " bytes");
     }
-    if (element.name != "vertex") {
-      if (const Status skipped = skip_element(input, element, header.value()); !skipped.is_ok()) return skipped;
-      continue;
-    }
-    const auto axes = find_axes(element);
-    if (!axes) return input->error(ErrorCode::kCorrupt, "its vertices have no properties x, y and z");
-    return read_vertices(input, element, header.value(), *axes, cloud);
+    const bool is_vertex = element.name == "vertex";
+    const auto axes = is_vertex ? find_axes(element) : std::nullopt;
+    if (is_vertex && !axes) return input->error(ErrorCode::kCorrupt, "its vertices have no properties x, y and z");
+    if (const Status read = read_element(input, element, header.value(), axes, cloud); !read.is_ok() || is_vertex) return read;
   }
   return input->error(ErrorCode::kCorrupt, "has no element 'vertex'");
 }

@@ -24,11 +24,6 @@ constexpr double kFarM = 3;  // what is farther counts as this far
 constexpr int kIterations = 12;
 constexpr double kSamePlaceM = 0.5, kSamePlaceRad = 0.17;
 
-struct Candidate {
-  Rigid3 T_cloud_map;
-  double score = 0;  ///< correlation, then the trimmed mean distance in metres
-};
-
 std::vector<Eigen::Vector3d> absolute(const PointCloud& cloud) {
   std::vector<Eigen::Vector3d> points;
   for (const Eigen::Vector3f& p : cloud.points_m) points.push_back(cloud.origin_m + p.cast<double>());
@@ -75,28 +70,28 @@ double match(const std::vector<Eigen::Vector3d>& samples, const CloudIndex& clou
 }
 
 /// Iterative closest points, point to point: slow at the end, but it comes from far.
-void improve(const std::vector<Eigen::Vector3d>& samples, const CloudIndex& cloud, Candidate* candidate) {
+void improve(const std::vector<Eigen::Vector3d>& samples, const CloudIndex& cloud, CoarseStart* candidate) {
   std::vector<PointPair> pairs;
-  candidate->score = match(samples, cloud, candidate->T_cloud_map, &pairs);
+  candidate->score_m = match(samples, cloud, candidate->T_cloud_map, &pairs);
   for (int i = 0; i < kIterations && !pairs.empty(); ++i) {
     const Rigid3 aligned = align_rigid(pairs).T_a_b;
     const double score = match(samples, cloud, aligned, &pairs);
-    if (score >= candidate->score) return;
-    const bool is_still = score > 0.998 * candidate->score;
+    if (score >= candidate->score_m) return;
+    const bool is_still = score > 0.998 * candidate->score_m;
     *candidate = {aligned, score};
     if (is_still) return;
   }
 }
 
-/// The map's walls on the cloud's in all ways, each at the places where most cells meet.
-std::vector<Candidate> slide(const std::vector<Eigen::Vector3d>& samples, const std::vector<Eigen::Vector3d>& map_cells,
-                             const std::vector<Eigen::Vector3d>& cloud_cells) {
+/// The map's walls on the cloud's in all ways, each at the places where most cells meet; their share stands for the score.
+std::vector<CoarseStart> slide(const std::vector<Eigen::Vector3d>& samples, const std::vector<Eigen::Vector3d>& map_cells,
+                               const std::vector<Eigen::Vector3d>& cloud_cells) {
   const Eigen::Matrix3d map_axes = wall_directions(map_cells), cloud_axes = wall_directions(cloud_cells);
   // The grid stands along the walls, so that a wall is one layer of cells.
   std::vector<Eigen::Vector3d> turned;
   for (const Eigen::Vector3d& p : cloud_cells) turned.push_back(cloud_axes.transpose() * p);
   const CellGrid grid(turned, kCellM, kMaxCells);
-  std::vector<Candidate> candidates;
+  std::vector<CoarseStart> candidates;
   for (const Eigen::Matrix3d& cube : cube_rotations()) {
     const Eigen::Matrix3d R_grid_map = cube * map_axes.transpose();
     std::vector<Eigen::Vector3d> points;
@@ -106,7 +101,7 @@ std::vector<Candidate> slide(const std::vector<Eigen::Vector3d>& samples, const 
           {{Eigen::Quaterniond(Eigen::Matrix3d(cloud_axes * R_grid_map)).normalized(), cloud_axes * place.translation_m}, place.share});
     }
   }
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+  std::sort(candidates.begin(), candidates.end(), [](const CoarseStart& a, const CoarseStart& b) { return a.score_m > b.score_m; });
   candidates.resize(std::min(candidates.size(), kNumImproved));
   return candidates;
 }
@@ -125,20 +120,20 @@ Result<std::vector<CoarseStart>> find_coarse_starts(std::span<const Eigen::Vecto
   for (const Eigen::Vector3d& p : samples) center += p / static_cast<double>(samples.size());
 
   const Rigid3 identity{Eigen::Quaterniond::Identity(), -cloud_origin_m};
-  std::vector<Candidate> candidates = slide(samples, map_cells, cloud_cells);
+  std::vector<CoarseStart> candidates = slide(samples, map_cells, cloud_cells);
   candidates.push_back({identity, 0});
   const std::vector<Eigen::Vector3f> targets = to_float(cloud_cells);
   const CloudIndex index(targets);
-  for (Candidate& candidate : candidates) improve(samples, index, &candidate);
-  std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
+  for (CoarseStart& candidate : candidates) improve(samples, index, &candidate);
+  std::stable_sort(candidates.begin(), candidates.end(), [](const CoarseStart& a, const CoarseStart& b) { return a.score_m < b.score_m; });
 
   std::vector<CoarseStart> starts;
-  for (const Candidate& candidate : candidates) {
+  for (const CoarseStart& candidate : candidates) {
     const auto is_known = [&](const CoarseStart& start) { return is_same_place(start.T_cloud_map, candidate.T_cloud_map, center); };
     if (starts.size() >= kNumKept || std::any_of(starts.begin(), starts.end(), is_known)) continue;
     // The map's own frame as it is, so that the report can say how far off it was.
     const bool is_identity = is_same_place(identity, candidate.T_cloud_map, center);
-    starts.push_back({is_identity ? identity : candidate.T_cloud_map, candidate.score, is_identity});
+    starts.push_back({is_identity ? identity : candidate.T_cloud_map, candidate.score_m, is_identity});
   }
   return starts;
 }

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/colmap/colmap_poses.h"
-
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -10,6 +8,7 @@
 #include "core/io/image_file.h"
 #include "core/io/text.h"
 #include "tools/common/text_format.h"
+#include "tools/mapping/colmap/colmap_model.h"
 
 namespace camloc::mapping {
 namespace {

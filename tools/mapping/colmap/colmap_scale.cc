@@ -5,7 +5,7 @@
 #include <map>
 
 #include "tools/common/text_format.h"
-#include "tools/mapping/colmap/colmap_poses.h"
+#include "tools/mapping/colmap/colmap_model.h"
 
 namespace camloc::mapping {
 namespace {

@@ -17,7 +17,6 @@
 #include "core/geometry/rigid3.h"
 #include "core/map/map_view.h"
 #include "tools/mapping/build/posed_frames.h"
-#include "tools/mapping/cloud/cloud_distance.h"
 #include "tools/mapping/cloud/cloud_registration.h"
 #include "tools/mapping/cloud/point_cloud.h"
 #include "tools/mapping/site/control_points.h"
