@@ -12,7 +12,6 @@
 #include "tools/camloc-map/commands.h"
 #include "tools/common/output_path.h"
 #include "tools/common/terminal_observer.h"
-#include "tools/mapping/build/build_report.h"
 #include "tools/mapping/build/map_pipeline.h"
 
 namespace camloc::mapping {

@@ -16,7 +16,6 @@
 #include "tools/common/terminal_observer.h"
 #include "tools/mapping/build/posed_frames.h"
 #include "tools/mapping/cloud/point_cloud.h"
-#include "tools/mapping/eval/eval_report.h"
 #include "tools/mapping/eval/evaluation.h"
 
 namespace camloc::mapping {

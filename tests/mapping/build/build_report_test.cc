@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What a build says, with and without what only some builds have.
-#include "tools/mapping/build/build_report.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+
+#include "tools/mapping/build/map_pipeline.h"
 
 namespace camloc::mapping {
 namespace {

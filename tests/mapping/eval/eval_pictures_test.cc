@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "tools/mapping/eval/eval_report.h"
+#include "tools/mapping/eval/evaluation.h"
 
 namespace camloc::mapping {
 namespace {

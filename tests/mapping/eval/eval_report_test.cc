@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Numbers of an evaluation stand in the table and in the JSON where they belong.
-#include "tools/mapping/eval/eval_report.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+
+#include "tools/mapping/eval/evaluation.h"
 
 namespace camloc::mapping {
 namespace {

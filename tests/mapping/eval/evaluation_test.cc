@@ -10,7 +10,6 @@
 
 #include "tests/base/recording_observer.h"
 #include "tests/mapping/flat_map.h"
-#include "tools/mapping/eval/eval_report.h"
 
 namespace camloc::mapping {
 namespace {

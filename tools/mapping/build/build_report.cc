@@ -1,11 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/build/build_report.h"
-
 #include <algorithm>
 
 #include "tools/common/json_text.h"
 #include "tools/common/text_format.h"
+#include "tools/mapping/build/map_pipeline.h"
 
 namespace camloc::mapping {
 namespace {

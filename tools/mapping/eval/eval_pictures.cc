@@ -6,7 +6,7 @@
 #include "core/base/order_statistics.h"
 #include "tools/common/text_format.h"
 #include "tools/mapping/cloud/cloud_index.h"
-#include "tools/mapping/eval/eval_report.h"
+#include "tools/mapping/eval/evaluation.h"
 #include "tools/mapping/picture/point_raster.h"
 
 namespace camloc::mapping {

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/mapping/eval/eval_report.h"
-
 #include "tools/common/json_text.h"
 #include "tools/common/text_format.h"
+#include "tools/mapping/eval/evaluation.h"
 
 namespace camloc::mapping {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "tools/common/text_format.h"
-#include "tools/mapping/eval/eval_report.h"
+#include "tools/mapping/eval/evaluation.h"
 
 namespace camloc::mapping {
 namespace {

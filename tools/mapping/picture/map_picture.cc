@@ -242,21 +242,22 @@ int height_for(const Plan& plan, int width, int least) {
   return std::max(least, std::min(3 * width / 4, static_cast<int>(inner) + 2 * kPanelMarginPx + 20));
 }
 
+ColorImage row_of(const ColorImage& left, const ColorImage& right, int width) {
+  ColorImage row = tools::blank_image(width, left.height, kBackground);
+  blit(left, 0, 0, &row);
+  blit(right, width - right.width, 0, &row);
+  return row;
+}
+
 ColorImage draw_coverage_row(const Scene& scene, const Plan& plan, int width) {
   const int list_width = std::clamp(width / 3, 340, 500), map_width = std::max(1, width - list_width - kMarginPx);
   const int height = height_for(plan, map_width, kListHeightPx);
-  ColorImage row = tools::blank_image(width, height, kBackground);
-  blit(draw_coverage(scene, plan, map_width, height), 0, 0, &row);
-  blit(draw_list(scene, list_width, height), width - list_width, 0, &row);
-  return row;
+  return row_of(draw_coverage(scene, plan, map_width, height), draw_list(scene, list_width, height), width);
 }
 
 ColorImage draw_view_row(const Scene& scene, const Plan& plan, int width) {
   const int half = (width - kMarginPx) / 2, height = height_for(plan, half, half / 2);
-  ColorImage row = tools::blank_image(width, height, kBackground);
-  blit(draw_top(scene, plan, half, height), 0, 0, &row);
-  blit(draw_perspective(scene, half, height), width - half, 0, &row);
-  return row;
+  return row_of(draw_top(scene, plan, half, height), draw_perspective(scene, half, height), width);
 }
 
 ColorImage draw_panels(const Scene& scene, MapPanel panel, int width) {

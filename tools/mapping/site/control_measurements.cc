@@ -15,12 +15,6 @@ namespace {
 /// Squared distance from the mean over variance and degree of freedom, above which measurements contradict each other.
 constexpr double kMaxScatterRatio = 16;
 
-Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
-
 Result<PointMeasurement> resolve(const ControlObservation& observation, const RgbdCamera& camera, const ControlSources& sources) {
   if (observation.kind == ObservationKind::kMapPosition) return PointMeasurement{{}, observation.p_map, observation.sigma, {}};
   if (observation.kind == ObservationKind::kLandmark) {
@@ -113,7 +107,8 @@ PointMeasurement to_map(const ControlObservation& pixel, const PixelMeasurement&
   const Eigen::Vector3d turned = T_map_camera.pose.rotation * (z * ray);
   // A pose error (dp, r) moves the point by dp + r x (R p).
   Eigen::Matrix<double, 3, 6> jacobian;
-  jacobian << Eigen::Matrix3d::Identity(), -skew(turned);
+  jacobian.leftCols<3>().setIdentity();
+  for (int axis = 0; axis < 3; ++axis) jacobian.col(3 + axis) = Eigen::Vector3d::Unit(axis).cross(turned);
   const Eigen::Matrix3d of_pose = jacobian * T_map_camera.covariance * jacobian.transpose();
   const double across_m = z * measurement.sigma_px / camera.color.mean_focal_px();
   const double along_m = camera.depth_noise.sigma_m(z) * ray.norm();

@@ -93,8 +93,7 @@ class RowReader {
     const auto coordinate = [&](std::size_t axis, const char* what) {
       return number(fields[axis], -kMaxCoordinateM, kMaxCoordinateM, what);
     };
-    const double x = coordinate(0, "x"), y = coordinate(1, "y"), z = coordinate(2, "z");
-    return {x, y, z};
+    return {coordinate(0, "x"), coordinate(1, "y"), coordinate(2, "z")};  // in this order
   }
 
   /// The field when it is there, else `fallback`.

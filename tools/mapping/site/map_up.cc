@@ -26,14 +26,9 @@ double extent_along(int axis, const std::vector<Eigen::Vector3d>& landmarks, con
 
 Eigen::Vector3d flattest_axis(const MapView& map) {
   const std::vector<Eigen::Vector3d> landmarks = tools::landmark_positions(map);
-  int flat = 0;
-  double smallest = extent_along(0, landmarks, map);
-  for (int axis = 1; axis < 3; ++axis) {
-    if (const double extent = extent_along(axis, landmarks, map); extent < smallest) {
-      smallest = extent;
-      flat = axis;
-    }
-  }
+  const Eigen::Vector3d extents(extent_along(0, landmarks, map), extent_along(1, landmarks, map), extent_along(2, landmarks, map));
+  Eigen::Index flat = 0;
+  extents.minCoeff(&flat);
   return Eigen::Vector3d::Unit(flat);
 }
 
