@@ -122,8 +122,7 @@ Status load_alignment(const EvalArguments& arguments, EvaluationInput* input) {
 Status evaluate(const EvalArguments& arguments, const MapView& map, EvalSummary* summary) {
   const auto start = std::chrono::steady_clock::now();
   tools::TerminalObserver observer;
-  EvaluationInput input;
-  input.map = &map;
+  EvaluationInput input{&map, nullptr, {}, {}};
   if (const Status loaded = load_alignment(arguments, &input); !loaded.is_ok()) return loaded;
   const bool is_scan = !arguments.lidar_path.empty();
   const auto cloud = is_scan ? read_cloud(arguments.lidar_path, {arguments.voxel_m, arguments.lidar_unit_m, 1}, observer)

@@ -46,10 +46,8 @@ Result<PointMeasurement> landmark_measurement(const MapView& map, std::uint32_t 
   if (landmark >= map.info().num_landmarks) {
     return {ErrorCode::kNotFound, "the map has landmarks 0 to " + std::to_string(map.info().num_landmarks - 1)};
   }
-  PointMeasurement measurement;
-  measurement.p_map = map.position_m(landmark).cast<double>();
-  measurement.sigma_m = std::max(kMinLandmarkSigmaM, 0.001 * map.landmarks()[landmark].position_sigma_mm);
-  return measurement;
+  const double sigma_m = std::max(kMinLandmarkSigmaM, 0.001 * map.landmarks()[landmark].position_sigma_mm);
+  return PointMeasurement{.name = {}, .p_map = map.position_m(landmark).cast<double>(), .sigma_m = sigma_m, .source = {}};
 }
 
 bool has_pixels(const std::vector<ControlObservation>& observations) {

@@ -168,7 +168,7 @@ Status find_poses(const BuildRequest& request, Slam* slam, TrackedRecording* rec
 
 Status place_recording(const BuildRequest& request, Slam* slam, TrackedRecording* recording, BuildSummary* summary) {
   if (recording->survey) {
-    summary->survey = GeorefSummary{};
+    summary->survey.emplace();
     summary->survey->map_path = summary->survey->out_path = request.map_path;
     recording->datum = adjust_to_survey(request.survey, *recording->survey, request.camera, slam, &recording->result, &*summary->survey);
     summary->survey->is_written = recording->datum.has_value();

@@ -63,12 +63,9 @@ void RecordingCheck::see_frame(const Frame& frame, std::size_t num_features, std
 }
 
 void RecordingCheck::see_view(std::uint64_t frame, std::int64_t stamp_ns, std::size_t num_features, std::size_t num_with_depth) {
-  Note& note = notes_.emplace_back();
-  note.frame = frame;
-  note.num_features = num_features;
-  note.num_with_depth = num_with_depth;
-  note.is_jump = num_seen_ > 0 && 1e-9 * static_cast<double>(stamp_ns - last_stamp_ns_) > kMaxGapS;
-  if (note.is_jump) ++num_jumps_;
+  const bool is_jump = num_seen_ > 0 && 1e-9 * static_cast<double>(stamp_ns - last_stamp_ns_) > kMaxGapS;
+  notes_.push_back({.frame = frame, .is_jump = is_jump, .num_features = num_features, .num_with_depth = num_with_depth});
+  if (is_jump) ++num_jumps_;
   if (num_features > 0 && num_with_depth == 0) ++num_without_depth_;
   last_stamp_ns_ = stamp_ns;
   ++num_seen_;

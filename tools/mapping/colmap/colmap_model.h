@@ -100,13 +100,10 @@ struct ColmapPoses {
   ModelScale scale;
 };
 
-/// Frame index of each image of the model: the frame whose colour file has the same name; folders in front do not count.
-/// kInvalid, naming the image: a name that no frame or several frames have, or that two images have.
-[[nodiscard]] Result<std::vector<std::size_t>> match_image_names(const ColmapModel& model, const Sequence& sequence);
-
 /// Reads the model, matches names, measures its scale at up to 60 images evenly over the recording, and turns poses into
-/// metres. The map's frame is the model's, scaled. Errors: those of read_colmap_model, match_image_names and
-/// estimate_model_scale, and another image size than the camera's.
+/// metres. The map's frame is the model's, scaled. Errors: those of read_colmap_model and estimate_model_scale; kInvalid, naming the
+/// image: a name that no frame or several frames have (folders in front do not count), or that two images have; another image size
+/// than the camera's.
 [[nodiscard]] Result<ColmapPoses> read_colmap_poses(const std::string& folder, const Sequence& sequence, const RgbdCamera& camera);
 
 }  // namespace camloc::mapping

@@ -68,8 +68,7 @@ Result<std::vector<DepthPair>> measure_depths(const ColmapModel& model, const st
   return pairs;
 }
 
-}  // namespace
-
+/// Frame index of each image of the model: the frame whose colour file has the same name; folders in front do not count.
 Result<std::vector<std::size_t>> match_image_names(const ColmapModel& model, const Sequence& sequence) {
   std::map<std::string, std::vector<std::size_t>> frames_of_name;
   for (std::size_t i = 0; i < sequence.frames.size(); ++i) frames_of_name[file_name(sequence.frames[i].color_path)].push_back(i);
@@ -95,6 +94,8 @@ Result<std::vector<std::size_t>> match_image_names(const ColmapModel& model, con
   }
   return frame_of_image;
 }
+
+}  // namespace
 
 Result<ColmapPoses> read_colmap_poses(const std::string& folder, const Sequence& sequence, const RgbdCamera& camera) {
   const auto model = read_colmap_model(folder);

@@ -22,29 +22,14 @@ constexpr std::size_t kNumImageFields = 9;                   // before the name
 constexpr std::size_t kNumPointFields = 8;                   // before the track
 constexpr double kMaxCoordinate = 1e9;
 
-/// Lines of a text with their numbers. Unlike content_lines() it hands out empty lines: an image without keypoints has one.
-class LineReader {
- public:
-  explicit LineReader(std::string_view text) : rest_(text) {}
-  bool next(TextLine* line) {
-    if (rest_.empty()) return false;
-    const std::size_t end = rest_.find('\n');
-    *line = {trimmed(rest_.substr(0, end)), ++number_};
-    rest_ = end == std::string_view::npos ? std::string_view() : rest_.substr(end + 1);
-    return true;
-  }
-  /// The next line that is neither empty nor a comment.
-  bool next_content(TextLine* line) {
-    while (next(line)) {
-      if (!line->text.empty() && line->text[0] != '#') return true;
-    }
-    return false;
-  }
-
- private:
-  std::string_view rest_;
-  int number_ = 0;
-};
+/// Takes the next line off the front, also an empty one: an image without keypoints has such.
+bool take_line(std::string_view* text, TextLine* line) {
+  if (text->empty()) return false;
+  const std::size_t end = std::min(text->find('\n'), text->size());
+  *line = {trimmed(text->substr(0, end)), line->number + 1};
+  text->remove_prefix(std::min(end + 1, text->size()));
+  return true;
+}
 
 /// Takes the next blank-separated field off the front; empty at the end.
 std::string_view take_field(std::string_view* text) {
@@ -82,8 +67,7 @@ std::optional<std::array<double, N>> take_finites(std::string_view* text) {
 
 Status read_cameras(const std::string& path, std::string_view text, ColmapModel* model) {
   std::unordered_set<std::uint32_t> ids;
-  LineReader lines(text);
-  for (TextLine line; lines.next_content(&line);) {
+  for (const TextLine& line : content_lines(text)) {
     std::string_view rest = line.text;
     const auto id = take_id<std::uint32_t>(&rest);
     const std::string lens(take_field(&rest));
@@ -106,8 +90,7 @@ Status read_cameras(const std::string& path, std::string_view text, ColmapModel*
 using PointIndex = std::unordered_map<std::uint64_t, std::uint32_t>;
 
 Status read_points(const std::string& path, std::string_view text, ColmapModel* model, PointIndex* index_of) {
-  LineReader lines(text);
-  for (TextLine line; lines.next_content(&line);) {
+  for (const TextLine& line : content_lines(text)) {
     std::string_view rest = line.text;
     const auto id = take_id<std::uint64_t>(&rest);
     const auto position = take_finites<3>(&rest);
@@ -158,8 +141,8 @@ Status parse_observations(const std::string& path, const TextLine& line, const P
 Status read_images(const std::string& path, std::string_view text, const PointIndex& index_of, ColmapModel* model) {
   std::unordered_set<std::uint32_t> camera_ids, ids;
   for (const ColmapCamera& camera : model->cameras) camera_ids.insert(camera.id);
-  LineReader lines(text);
-  for (TextLine line; lines.next_content(&line);) {
+  for (TextLine line; take_line(&text, &line);) {
+    if (line.text.empty() || line.text[0] == '#') continue;
     auto image = parse_image(line.text);
     if (!image) return line_error(path, line.number, "not IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME: " + in_quotes(line.text));
     if (!ids.insert(image->id).second) return line_error(path, line.number, "image " + std::to_string(image->id) + " a second time");
@@ -168,9 +151,8 @@ Status read_images(const std::string& path, std::string_view text, const PointIn
           path, line.number,
           in_quotes(image->name) + " was taken by camera " + std::to_string(image->camera_id) + ", which cameras.txt does not have");
     }
-    TextLine keypoints;
-    if (lines.next(&keypoints)) {
-      if (const Status read = parse_observations(path, keypoints, index_of, &*image); !read.is_ok()) return read;
+    if (take_line(&text, &line)) {
+      if (const Status read = parse_observations(path, line, index_of, &*image); !read.is_ok()) return read;
     }
     model->images.push_back(std::move(*image));
   }

@@ -108,9 +108,7 @@ class Search {
   }
 
   void keep(const Mask& mask, const Alignment& alignment) {
-    Choice choice;
-    choice.chi_squared = alignment.chi_squared;
-    choice.rms_m = alignment.rms_m;
+    Choice choice{0, alignment.chi_squared, alignment.rms_m, 0};
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
       choice.num_inliers += mask[i] ? 1 : 0;
       const double ratio = residual_m(alignment, i) / limits_m_[i];
