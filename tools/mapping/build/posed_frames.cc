@@ -97,7 +97,7 @@ Result<SelectedFrames> find_frames(const PosedFramesRequest& request) {
 Result<PosedFrames> find_posed_frames(const PosedFramesRequest& request, const RgbdCamera& camera) {
   const auto selection = select(request);
   if (!selection.is_ok()) return selection.status();
-  PosedFrames result{*selection};
+  PosedFrames result{*selection, {}, 0, {}};
   const auto poses = recorded_poses(request, selection->sequence, camera, &result.scale);
   if (!poses.is_ok()) return poses.status();
 

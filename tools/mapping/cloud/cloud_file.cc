@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "core/io/text.h"
+#include "tools/mapping/cloud/cloud_input.h"
 #include "tools/mapping/cloud/point_cloud.h"
 
 namespace camloc::mapping {

@@ -179,7 +179,8 @@ std::vector<GeorefPoint> match_points(const std::vector<ControlPoint>& points, c
     if (found == by_name.end()) continue;
     const ObservedPoint& seen = *found->second;
     const PointPair pair{point.p_wcs, seen.p_map, std::hypot(point.sigma_m, seen.sigma_m)};
-    matched.push_back({.name = point.name, .pair = pair, .num_measurements = seen.num_measurements, .scatter_m = seen.scatter_m});
+    matched.push_back(
+        {.name = point.name, .pair = pair, .num_measurements = seen.num_measurements, .scatter_m = seen.scatter_m, .left_out = {}});
   }
   return matched;
 }
