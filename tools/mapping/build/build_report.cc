@@ -53,7 +53,7 @@ void append_submaps(const BuildSummary& s, std::string* text) {
   }
 }
 
-// The longest spots, in the order of the walk.
+// The longest spots, in the order of the recording.
 void append_weak_spots(const std::vector<WeakSpot>& all, std::string* text) {
   if (all.empty()) return;
   std::vector<WeakSpot> shown = all;

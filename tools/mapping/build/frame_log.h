@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What was seen in each frame of a walk, in a file beside the map while it is built. The map is made in two passes: where was
+// What was seen in each frame of a recording, in a file beside the map while it is built. The map is made in two passes: where was
 // the camera, then what did it see from there; the log spares the second pass the images, and a build that was interrupted
-// goes on from it with the very same state, because every view so far is processed again in the same order.
+// goes on from it with the very same state, because every frame so far is processed again in the same order.
 //
 // Layout, little-endian: a 64-byte header (magic, version, identity of the build), then records: RecordHeader, the arrays of
-// the view, an XXH3 hash over both. A record that was cut off by a crash is where the log ends.
+// the frame, an XXH3 hash over both. A record that was cut off by a crash is where the log ends.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct LoggedFrame {
   std::vector<Eigen::Vector3f> surface_m;  ///< coarse sample of what the depth camera saw, in the camera frame
 };
 
-/// Appends views. Not thread-safe.
+/// Appends frames. Not thread-safe.
 class FrameLogWriter {
  public:
   /// A new log; an old one at the path is replaced. `identity` names recording, camera and options: a log is only good for
@@ -35,7 +35,7 @@ class FrameLogWriter {
   static Result<FrameLogWriter> create(const std::string& path, std::uint64_t identity);
   /// Goes on after the first `size_bytes` of an existing log.
   static Result<FrameLogWriter> append(const std::string& path, std::uint64_t size_bytes);
-  /// kIo when the disk is full; the views before are safe.
+  /// kIo when the disk is full; the frames before are safe.
   [[nodiscard]] Status add(const LoggedFrame& view);
   [[nodiscard]] Status flush();
 
@@ -46,7 +46,7 @@ class FrameLogWriter {
   std::vector<char> bytes_;
 };
 
-/// Reads views in their order. Not thread-safe.
+/// Reads frames in their order. Not thread-safe.
 class FrameLogReader {
  public:
   /// kNotFound; kCorrupt for another kind of file; kInvalid where the log belongs to another build.

@@ -47,7 +47,7 @@ struct SlamSummary {
   MapFit fit;  ///< of the largest segment
   std::vector<WeakSpot> weak_spots;
   std::uint64_t num_stamp_jumps = 0;
-  std::uint64_t num_resumed = 0;      ///< views taken from an interrupted build
+  std::uint64_t num_resumed = 0;      ///< frames taken from an interrupted build
   std::string up_problem;             ///< why no vertical was found
   std::optional<GravityEstimate> up;  ///< before the map was turned
 };
@@ -81,7 +81,7 @@ struct BuildSummary {
 /// existing map at the path is replaced by a complete one or stays as it is.
 [[nodiscard]] Status build_map(const BuildRequest& request, WorkObserver& observer, BuildSummary* summary);
 
-/// The view log of a build, beside its map.
+/// The frame log of a build, beside its map.
 [[nodiscard]] std::string frame_log_path(const std::string& map_path);
 
 }  // namespace camloc::mapping

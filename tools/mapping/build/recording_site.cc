@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// A walk floats until something holds it. Control points are resolved to points of the map, fitted, and given to the bundle
+// A recording floats until something holds it. Control points are resolved to points of the map, fitted, and given to the bundle
 // adjustment as surveyed landmarks; a second fit, on the adjusted map and with the strict tolerance, gives the datum.
 #include "tools/mapping/build/recording_site.h"
 

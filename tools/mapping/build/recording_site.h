@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Where a walk lies in the world: which way is up, and, where control points were surveyed, the site's coordinates.
+// Where a recording lies in the world: which way is up, and, where control points were surveyed, the site's coordinates.
 #pragma once
 
 #include <optional>

@@ -91,7 +91,7 @@ class Pass {
     return log->add(logged);
   }
 
-  /// Whether the view has become a keyframe.
+  /// Whether the frame has become a keyframe.
   bool track(const LoggedFrame& logged) {
     const FrameReport report = slam_->add_view(logged.frame, logged.view, logged.thumbnail);
     check_->see_report(report);

@@ -41,7 +41,7 @@ class RecordingCheck {
 
   /// Before tracking: depth missing, constant, in the wrong unit. `num_with_depth` features of `num_features` have depth.
   void see_frame(const Frame& frame, std::size_t num_features, std::size_t num_with_depth);
-  /// The same for a view whose images are gone.
+  /// The same for a frame whose images are gone.
   void see_view(std::uint64_t frame, std::int64_t stamp_ns, std::size_t num_features, std::size_t num_with_depth);
   /// After tracking of the same frame.
   void see_report(const FrameReport& report);
@@ -81,7 +81,7 @@ struct KeyframeSurface {
 struct RecordingEnd {
   std::vector<KeyframeSurface> surfaces;
   bool is_interrupted = false;          ///< what is there is a map of the first part
-  std::uint64_t num_resumed = 0;        ///< views that came from the log
+  std::uint64_t num_resumed = 0;        ///< frames that came from the log
   tools::FrameCounts reading;           ///< of this pass, without what came from the log
   std::uint64_t num_without_depth = 0;  ///< colour images without a depth image
 };
