@@ -16,9 +16,7 @@
 #include "tools/camloc-camera/commands.h"
 #include "tools/camloc-camera/coverage_picture.h"
 #include "tools/common/command_line.h"
-#include "tools/common/interrupt.h"
-#include "tools/common/output_path.h"
-#include "tools/common/progress_line.h"
+#include "tools/common/terminal_observer.h"
 #include "tools/common/text_format.h"
 
 namespace camloc::camera_tool {

@@ -10,7 +10,7 @@
 #include "core/io/camera_file.h"
 #include "core/map/map_view.h"
 #include "tools/camloc-map/commands.h"
-#include "tools/common/output_path.h"
+#include "tools/common/command_line.h"
 #include "tools/common/terminal_observer.h"
 #include "tools/mapping/build/map_pipeline.h"
 

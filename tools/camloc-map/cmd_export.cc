@@ -8,7 +8,7 @@
 
 #include "core/io/replace_file.h"
 #include "tools/camloc-map/commands.h"
-#include "tools/common/output_path.h"
+#include "tools/common/command_line.h"
 #include "tools/common/text_format.h"
 #include "tools/mapping/colmap/map_export.h"
 

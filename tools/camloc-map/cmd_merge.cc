@@ -6,7 +6,7 @@
 
 #include "core/map/map_unpack.h"
 #include "tools/camloc-map/commands.h"
-#include "tools/common/output_path.h"
+#include "tools/common/command_line.h"
 #include "tools/common/terminal_observer.h"
 #include "tools/mapping/build/merge_pipeline.h"
 

@@ -8,7 +8,7 @@
 #include "core/io/image_writer.h"
 #include "core/io/sequence.h"
 #include "tools/camloc-map/commands.h"
-#include "tools/common/output_path.h"
+#include "tools/common/command_line.h"
 #include "tools/mapping/picture/map_picture.h"
 
 namespace camloc::mapping {

@@ -13,7 +13,7 @@
 
 #include "tools/camloc-sim/dataset.h"
 #include "tools/common/command_line.h"
-#include "tools/common/progress_line.h"
+#include "tools/common/terminal_observer.h"
 
 namespace {
 

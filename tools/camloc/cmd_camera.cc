@@ -13,7 +13,7 @@
 #include "core/io/replace_file.h"
 #include "drivers/sources.h"
 #include "tools/camloc/commands.h"
-#include "tools/common/output_path.h"
+#include "tools/common/command_line.h"
 #include "tools/common/text_format.h"
 
 namespace camloc::tools {

@@ -11,7 +11,7 @@
 #include "core/io/camera_file.h"
 #include "core/map/map_view.h"
 #include "tools/camloc/commands.h"
-#include "tools/common/output_path.h"
+#include "tools/common/command_line.h"
 #include "tools/common/text_format.h"
 #include "tools/evaluation/recorded_poses.h"
 #include "tools/evaluation/top_view.h"

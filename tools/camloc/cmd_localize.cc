@@ -9,7 +9,7 @@
 #include "core/io/replace_file.h"
 #include "tools/camloc/commands.h"
 #include "tools/common/json_text.h"
-#include "tools/common/output_path.h"
+#include "tools/common/command_line.h"
 #include "tools/common/terminal_observer.h"
 #include "tools/common/text_format.h"
 #include "tools/common/trajectory_file.h"

@@ -14,8 +14,7 @@
 #include "drivers/sources.h"
 #include "tools/camloc/commands.h"
 #include "tools/common/command_line.h"
-#include "tools/common/interrupt.h"
-#include "tools/common/progress_line.h"
+#include "tools/common/terminal_observer.h"
 #include "tools/common/text_format.h"
 #include "tools/recording/recorder.h"
 

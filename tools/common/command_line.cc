@@ -4,6 +4,8 @@
 
 #include <cstdio>
 #include <exception>
+#include <filesystem>
+#include <system_error>
 
 #include "tools/common/text_format.h"
 
@@ -49,5 +51,14 @@ int report(const std::string& program, const Status& status) {
 }
 
 bool print_text(const std::string& text) { return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0; }
+
+Status check_output_path(const std::string& option, const std::string& path) {
+  std::error_code ignored;
+  if (path.empty()) return {ErrorCode::kInvalid, option + ": is empty; give a file name"};
+  if (std::filesystem::is_directory(path, ignored)) return {ErrorCode::kInvalid, option + " " + path + ": is a folder; give a file name"};
+  const auto folder = std::filesystem::path(path).parent_path();
+  if (folder.empty() || std::filesystem::is_directory(folder, ignored)) return Status::ok();
+  return {ErrorCode::kInvalid, option + " " + path + ": folder " + folder.string() + " does not exist; make it first"};
+}
 
 }  // namespace camloc::tools

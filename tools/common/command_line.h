@@ -25,4 +25,8 @@ int report(const std::string& program, const Status& status);
 /// Whether all of `text` went to stdout.
 [[nodiscard]] bool print_text(const std::string& text);
 
+/// Whether a result can be written where the user wants it, asked before the work is done.
+/// kInvalid where `path` is empty, a folder, or in a folder that does not exist; `option` is named in the message.
+[[nodiscard]] Status check_output_path(const std::string& option, const std::string& path);
+
 }  // namespace camloc::tools

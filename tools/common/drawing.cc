@@ -13,105 +13,32 @@ namespace {
 constexpr double kGlyphHeight = 24;  // of a capital letter, in units of the strokes
 constexpr int kGlyphDescent = 8;     // how far below the line of text the strokes' coordinates begin
 
-/// ASCII 32 to 126: the width with the gap to the next letter, then strokes with a blank between them, each a list of points (right, up);
-/// a number is its character less '0'.
-constexpr std::array<std::string_view, 95> kGlyphs = {">",
-                                                      "81?1P 1818",
-                                                      "=1I1P 7I7P",
-                                                      "H488P ;8?P 1@A@ 2HBH",
-                                                      "F=N;P7P4O2M1J2G5E8D<C?A@>?;<988491; 858S",
-                                                      "H18AP 8K7O4P1O0K1G4F7G8K B=AA>B;A:=;9>8A9B=",
-                                                      "HB85G5H4J4M5O7P9P;O<M<J;H3B1A0>1;3978:9AB",
-                                                      "81I1P",
-                                                      ";5Q2J1B2953",
-                                                      ";1Q4J5B4:13",
-                                                      "A6B6N 1E;K 1K;E",
-                                                      "F8:8J 0B@B",
-                                                      "9383713",
-                                                      "@0B:B",
-                                                      "81818",
-                                                      "B05<S",
-                                                      "D>D=J:N7P4N1J0D1>3:78::=>>D",
-                                                      "C2K8P88",
-                                                      "D0K2N5P8P;N=L>I=F08>8",
-                                                      "D1M4O6P:O<M<J<G:E6D7D:C=A>>=;:978390;",
-                                                      "E;8;P0???",
-                                                      "D=P2P1E2G6H9H<E>B>><;9968290<",
-                                                      "D<P5I0A2E5G9G<E>A>><:98582:0>0A",
-                                                      "D0P>P58",
-                                                      "D7D:E<G<J<M:O7P4O2M2J2G4E7D 7D4C1A0>1;3978:9=;>>=A:C7D",
-                                                      "D289?>G>J<N9P5P2N0J0G2C5A9A<C>G",
-                                                      "81818 1E1E",
-                                                      "9383713 3E3E",
-                                                      "D>;0B>I",
-                                                      "E0??? 0F?F",
-                                                      "D0;>B0I",
-                                                      "B0K1N3O6P9O;M<K<H:F6B6? 6868",
-                                                      "MAD@G>I<J:I8G7D8A9?<>>?@AADA@B?C>E>F?G@GDGEDK@O:P5M2G1A4;87>6C9",
-                                                      "F088P@8 3@=@",
-                                                      "F0D8D;E=G>J=M;O8P0P0898<9?;@>?A<C9D",
-                                                      "E?L;P7P3L0G0A3<78;8?<",
-                                                      "F080P6P;N?J@D?>;:6808",
-                                                      "C=P0P08=8 0D;D",
-                                                      "C=P0P08 0D;D",
-                                                      "G?L<O7P4N1I0C1>4:88<9@<AC:C",
-                                                      "F080P @8@P 0D@D",
-                                                      "8181P",
-                                                      "@:P:>9;8958391;0>",
-                                                      "E080P >P0A 5F?8",
-                                                      "B0P08<8",
-                                                      "H080P9<BPB8",
-                                                      "F080P@8@P",
-                                                      "HBDAJ>N9P5N1J0D1>4:98>:A>BD",
-                                                      "E080P8P<O>M?J>F<D8C0C",
-                                                      "HBDAJ>N9P5N1J0D1>4:98>:A>BD ;>B6",
-                                                      "E080P8P<O>M?J>F<D8C0C 7C?8",
-                                                      "F=N;P7P4O2M1J2G5E8D<C?A@>?;<988491;",
-                                                      "F0P@P 888P",
-                                                      "F0P0@1<4988<9?<@@@P",
-                                                      "F0P88@P",
-                                                      "J0P58:L?8DP",
-                                                      "E0P?8 ?P08",
-                                                      "F0P8D@P 888D",
-                                                      "E0P>P08?8",
-                                                      "<6S1S1363",
-                                                      "B0S<5",
-                                                      ";0S5S5303",
-                                                      "B0G6P<G",
-                                                      "F04@4",
-                                                      ":0P4K",
-                                                      "C=@<D:G6H3G1D0@1<3968:9<<=@ =8=H",
-                                                      "C080P =@<D:G6H3G1D0@1<3968:9<<=@",
-                                                      "B<F9H5H2F0B0>2:5898<:",
-                                                      "C=8=P =@<D:G6H3G1D0@1<3968:9<<=@",
-                                                      "C0@=@<D:G7H4G1E0A0=2:5888;:",
-                                                      "@:P8P6O4M4K48 0H:H",
-                                                      "C=@<D:G6H3G1D0@1<3968:9<<=@ =H=6<3:1704123",
-                                                      "C080P 0B1E3G6H:G<E=B=8",
-                                                      "7181H 1N1N",
-                                                      ";5H5452412000 5N5N",
-                                                      "B080P ;H0> 4B<8",
-                                                      ":1P1;2948",
-                                                      "J080H 0C1F3G5H8G9F:C:8 :C;F<G?HBGCFDCD8",
-                                                      "C080H 0B1E3G6H:G<E=B=8",
-                                                      "D>@=D:G7H4G1D0@1<3978:9=<>@",
-                                                      "C000H =@<D:G6H3G1D0@1<3968:9<<=@",
-                                                      "C=0=H =@<D:G6H3G1D0@1<3968:9<<=@",
-                                                      "?080H 0A1D3G6H9H",
-                                                      "B:G8H5H3G1F1D2B4@6@9?;><<;:9968391:",
-                                                      "@4N4=4;6988:8 0H:H",
-                                                      "C0H0?1;3968:9<;=> =8=H",
-                                                      "B0H68<H",
-                                                      "H0H589F=8BH",
-                                                      "B0H<8 <H08",
-                                                      "B0H68 <H684300",
-                                                      "B0H<H08<8",
-                                                      ">8S5R4O4F1C4@475483",
-                                                      "8131S",
-                                                      "=0S3R4O4F7C4@473403",
-                                                      "F0@1C3D4E6D8C8@9?<>>??@@C"};
+/// ASCII 32 to 126, each ended by '|': the width with the gap to the next letter, then strokes with a blank between them, each a list of
+/// points (right, up); a number is its character less '0'.
+constexpr std::string_view kGlyphs =
+    ">|81?1P 1818|=1I1P 7I7P|H488P ;8?P 1@A@ 2HBH|F=N;P7P4O2M1J2G5E8D<C?A@>?;<988491; 858S|"
+    "H18AP 8K7O4P1O0K1G4F7G8K B=AA>B;A:=;9>8A9B=|HB85G5H4J4M5O7P9P;O<M<J;H3B1A0>1;3978:9AB|81I1P|;5Q2J1B2953|;1Q4J5B4:13|"
+    "A6B6N 1E;K 1K;E|F8:8J 0B@B|9383713|@0B:B|81818|B05<S|D>D=J:N7P4N1J0D1>3:78::=>>D|C2K8P88|D0K2N5P8P;N=L>I=F08>8|"
+    "D1M4O6P:O<M<J<G:E6D7D:C=A>>=;:978390;|E;8;P0???|D=P2P1E2G6H9H<E>B>><;9968290<|D<P5I0A2E5G9G<E>A>><:98582:0>0A|D0P>P58|"
+    "D7D:E<G<J<M:O7P4O2M2J2G4E7D 7D4C1A0>1;3978:9=;>>=A:C7D|D289?>G>J<N9P5P2N0J0G2C5A9A<C>G|81818 1E1E|9383713 3E3E|D>;0B>I|"
+    "E0??? 0F?F|D0;>B0I|B0K1N3O6P9O;M<K<H:F6B6? 6868|MAD@G>I<J:I8G7D8A9?<>>?@AADA@B?C>E>F?G@GDGEDK@O:P5M2G1A4;87>6C9|F088P@8 3@=@|"
+    "F0D8D;E=G>J=M;O8P0P0898<9?;@>?A<C9D|E?L;P7P3L0G0A3<78;8?<|F080P6P;N?J@D?>;:6808|C=P0P08=8 0D;D|C=P0P08 0D;D|"
+    "G?L<O7P4N1I0C1>4:88<9@<AC:C|F080P @8@P 0D@D|8181P|@:P:>9;8958391;0>|E080P >P0A 5F?8|B0P08<8|H080P9<BPB8|F080P@8@P|"
+    "HBDAJ>N9P5N1J0D1>4:98>:A>BD|E080P8P<O>M?J>F<D8C0C|HBDAJ>N9P5N1J0D1>4:98>:A>BD ;>B6|E080P8P<O>M?J>F<D8C0C 7C?8|"
+    "F=N;P7P4O2M1J2G5E8D<C?A@>?;<988491;|F0P@P 888P|F0P0@1<4988<9?<@@@P|F0P88@P|J0P58:L?8DP|E0P?8 ?P08|F0P8D@P 888D|E0P>P08?8|"
+    "<6S1S1363|B0S<5|;0S5S5303|B0G6P<G|F04@4|:0P4K|C=@<D:G6H3G1D0@1<3968:9<<=@ =8=H|C080P =@<D:G6H3G1D0@1<3968:9<<=@|"
+    "B<F9H5H2F0B0>2:5898<:|C=8=P =@<D:G6H3G1D0@1<3968:9<<=@|C0@=@<D:G7H4G1E0A0=2:5888;:|@:P8P6O4M4K48 0H:H|"
+    "C=@<D:G6H3G1D0@1<3968:9<<=@ =H=6<3:1704123|C080P 0B1E3G6H:G<E=B=8|7181H 1N1N|;5H5452412000 5N5N|B080P ;H0> 4B<8|:1P1;2948|"
+    "J080H 0C1F3G5H8G9F:C:8 :C;F<G?HBGCFDCD8|C080H 0B1E3G6H:G<E=B=8|D>@=D:G7H4G1D0@1<3978:9=<>@|C000H =@<D:G6H3G1D0@1<3968:9<<=@|"
+    "C=0=H =@<D:G6H3G1D0@1<3968:9<<=@|?080H 0A1D3G6H9H|B:G8H5H3G1F1D2B4@6@9?;><<;:9968391:|@4N4=4;6988:8 0H:H|"
+    "C0H0?1;3968:9<;=> =8=H|B0H68<H|H0H589F=8BH|B0H<8 <H08|B0H68 <H684300|B0H<H08<8|>8S5R4O4F1C4@475483|8131S|=0S3R4O4F7C4@473403|"
+    "F0@1C3D4E6D8C8@9?<>>??@@C|";
 
-std::string_view glyph_of(char c) { return kGlyphs[static_cast<std::size_t>((c < ' ' || c > '~' ? '?' : c) - ' ')]; }
+std::string_view glyph_of(char c) {
+  std::string_view rest = kGlyphs;
+  for (int i = (c < ' ' || c > '~' ? '?' : c) - ' '; i > 0; --i) rest.remove_prefix(rest.find('|') + 1);
+  return rest.substr(0, rest.find('|'));
+}
 
 void blend(ColorImage* image, int u, int v, Rgb color, double cover) {
   auto* pixel =
