@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "core/io/camera_file.h"
-#include "core/io/frame_selection.h"
 #include "core/io/image_file.h"
 #include "core/io/sequence.h"
 #include "drivers/pacer.h"

@@ -6,10 +6,8 @@
 #include "core/io/camera_file.h"
 
 #include <charconv>
-#include <cstdio>
 #include <filesystem>
 
-#include "core/io/camera_formats.h"
 #include "core/io/file_bytes.h"
 #include "core/io/text.h"
 
@@ -48,21 +46,6 @@ std::string list(const Numbers& numbers, std::size_t count) {
   return result + "]";
 }
 
-std::string escaped(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    char code[8];
-    if (static_cast<unsigned char>(c) < 32 || c == 127) {
-      std::snprintf(code, sizeof(code), "\\u%04X", static_cast<unsigned>(c));
-      result += code;
-    } else {
-      result += c;
-    }
-  }
-  return result + "\"";
-}
-
 std::string format_intrinsics(const Intrinsics& k) {
   std::string result = "width = " + std::to_string(k.width) + "    # pixels\nheight = " + std::to_string(k.height) + "\n";
   result += "fx = " + number(k.fx) + "    # focal lengths, pixels\nfy = " + number(k.fy) + "\n";
@@ -97,7 +80,7 @@ Result<RgbdCamera> read_camera_file(const std::string& path) {
 }
 
 std::string format_camera_toml(const RgbdCamera& camera) {
-  std::string result = "name = " + escaped(camera.name) + "\n\n[color]\n" + format_intrinsics(camera.color) + "\n[depth]\n";
+  std::string result = "name = " + in_double_quotes(camera.name) + "\n\n[color]\n" + format_intrinsics(camera.color) + "\n[depth]\n";
   result += std::string("registered = ") + (camera.is_depth_registered ? "true" : "false") + "    # depth pixels are colour pixels\n";
   if (!camera.is_depth_registered) result += format_intrinsics(camera.depth);
   result += "unit_m = " + number(camera.depth_unit_m) + "    # metres per raw unit\n";

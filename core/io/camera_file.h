@@ -22,4 +22,9 @@ namespace camloc {
 /// Our TOML, readable by read_camera_file to the last bit.
 [[nodiscard]] std::string format_camera_toml(const RgbdCamera& camera);
 
+/// The two parsers behind parse_camera(). Neither lets an exception out; neither checks more than that the keys are there and have the
+/// right type.
+[[nodiscard]] Result<RgbdCamera> parse_camera_toml(const std::string& text, const std::string& name);
+[[nodiscard]] Result<RgbdCamera> parse_camera_yaml(const std::string& text, const std::string& name);
+
 }  // namespace camloc

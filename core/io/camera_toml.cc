@@ -13,12 +13,23 @@
 #include <string>
 #include <string_view>
 
-#include "core/io/camera_formats.h"
+#include "core/io/camera_file.h"
 #include "core/io/text.h"
 
 namespace camloc {
 
 namespace {
+
+std::optional<double> finite_number(const toml::node& node) {
+  const std::optional<double> found = node.is_number() ? node.value<double>() : std::nullopt;
+  return found && std::isfinite(*found) ? found : std::nullopt;
+}
+
+std::string listed(std::initializer_list<std::string_view> words) {
+  std::string list;
+  for (const std::string_view word : words) list += std::string(list.empty() ? "" : ", ") + std::string(word);
+  return list;
+}
 
 /// One table of the file. Keeps the first error; every getter after it does nothing.
 class TableReader {
@@ -30,38 +41,23 @@ class TableReader {
   void allow(std::initializer_list<std::string_view> known) {
     for (const auto& [key, node] : table_) {
       if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
-      std::string list;
-      for (const std::string_view one : known) list += std::string(list.empty() ? "" : ", ") + std::string(one);
-      fail(key.source().begin.line, "unknown key " + in_quotes(key.str()) + " in " + where() + "; known: " + list);
-      return;
+      return fail(key.source().begin.line, "unknown key " + in_quotes(key.str()) + " in " + where() + "; known: " + listed(known));
     }
   }
   [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
-  void number(std::string_view key, bool is_required, double* value) {
-    const toml::node* node = find(key, is_required);
-    if (node == nullptr) return;
-    const std::optional<double> found = node->is_number() ? node->value<double>() : std::nullopt;
-    if (!found || !std::isfinite(*found)) return fail(line_of(*node), std::string(key) + ": expected a number");
-    *value = *found;
-  }
+  void number(std::string_view key, bool is_required, double* value) { read(key, is_required, "a number", value, finite_number); }
   void size(std::string_view key, int* value) {
-    const toml::node* node = find(key, true);
-    if (node == nullptr) return;
-    const std::optional<std::int64_t> found = node->is_integer() ? node->value<std::int64_t>() : std::nullopt;
-    if (!found || *found < 1 || *found > 16384) return fail(line_of(*node), std::string(key) + ": expected 1 to 16384 pixels");
-    *value = static_cast<int>(*found);
+    const auto pixels = [](const toml::node& node) -> std::optional<std::int64_t> {
+      const std::optional<std::int64_t> found = node.is_integer() ? node.value<std::int64_t>() : std::nullopt;
+      return found && *found >= 1 && *found <= 16384 ? found : std::nullopt;
+    };
+    read(key, true, "1 to 16384 pixels", value, pixels);
   }
   void flag(std::string_view key, bool* value) {
-    const toml::node* node = find(key, false);
-    if (node == nullptr) return;
-    if (!node->is_boolean()) return fail(line_of(*node), std::string(key) + ": expected true or false");
-    *value = *node->value<bool>();
+    read(key, false, "true or false", value, [](const toml::node& node) { return node.value_exact<bool>(); });
   }
   void text(std::string_view key, std::string* value) {
-    const toml::node* node = find(key, false);
-    if (node == nullptr) return;
-    if (!node->is_string()) return fail(line_of(*node), std::string(key) + ": expected a text in quotes");
-    *value = *node->value<std::string>();
+    read(key, false, "a text in quotes", value, [](const toml::node& node) { return node.value_exact<std::string>(); });
   }
   /// One of `choices`, by position.
   void choice(std::string_view key, std::initializer_list<std::string_view> choices, int* value) {
@@ -69,13 +65,8 @@ class TableReader {
     text(key, &found);
     if (!status_ || !has(key)) return;
     const auto match = std::find(choices.begin(), choices.end(), found);
-    if (match != choices.end()) {
-      *value = static_cast<int>(match - choices.begin());
-      return;
-    }
-    std::string list;
-    for (const std::string_view one : choices) list += std::string(list.empty() ? "" : ", ") + std::string(one);
-    fail(line_of(*table_.get(key)), std::string(key) + ": " + in_quotes(found) + ", expected one of " + list);
+    *value = static_cast<int>(match - choices.begin());
+    if (match == choices.end()) fail(line_of(key), std::string(key) + ": " + in_quotes(found) + ", expected one of " + listed(choices));
   }
   /// Between `least` and `values.size()` numbers.
   template <std::size_t N>
@@ -89,8 +80,8 @@ class TableReader {
     }
     for (std::size_t i = 0; i < array->size(); ++i) {
       const toml::node& item = *array->get(i);
-      const std::optional<double> found = item.is_number() ? item.value<double>() : std::nullopt;
-      if (!found || !std::isfinite(*found)) return fail(line_of(item), std::string(key) + ": expected " + expected + " numbers");
+      const std::optional<double> found = finite_number(item);
+      if (!found) return fail(line_of(item), std::string(key) + ": expected " + expected + " numbers");
       (*values)[i] = *found;
     }
   }
@@ -103,6 +94,15 @@ class TableReader {
  private:
   static std::uint32_t line_of(const toml::node& node) { return node.source().begin.line; }
   [[nodiscard]] std::string where() const { return section_.empty() ? "the file" : "[" + section_ + "]"; }
+  /// `parse` gives the value, or nothing where the node does not hold `expected`.
+  template <typename Value, typename Parse>
+  void read(std::string_view key, bool is_required, const char* expected, Value* value, const Parse& parse) {
+    const toml::node* node = find(key, is_required);
+    if (node == nullptr) return;
+    const auto found = parse(*node);
+    if (!found) return fail(line_of(*node), std::string(key) + ": expected " + expected);
+    *value = static_cast<Value>(*found);
+  }
   const toml::node* find(std::string_view key, bool is_required) {
     if (!status_) return nullptr;
     const toml::node* node = table_.get(key);
@@ -186,30 +186,20 @@ Result<RgbdCamera> parse_camera_toml(const std::string& text, const std::string&
   TableReader root(name, file, "", &status);
   root.allow({"name", "color", "depth", "extrinsics", "poses"});
   root.text("name", &camera.name);
-  const auto section = [&](const char* key, auto&& read, bool is_required) {
-    if (!status) return;
-    const toml::node* node = file.get(key);
-    if (node == nullptr) {
-      if (is_required) root.fail(1, std::string("[") + key + "] is missing");
-      return;
-    }
-    if (!node->is_table()) return root.fail(node->source().begin.line, std::string(key) + ": expected a table [" + key + "]");
-    TableReader reader(name, *node->as_table(), key, &status);
-    read(&reader);
+  const auto section = [&](const char* key, bool is_required) -> std::optional<TableReader> {
+    const toml::node* node = status ? file.get(key) : nullptr;
+    if (node != nullptr && node->is_table()) return TableReader(name, *node->as_table(), key, &status);
+    if (node != nullptr) root.fail(node->source().begin.line, std::string(key) + ": expected a table [" + key + "]");
+    if (node == nullptr && is_required) root.fail(1, std::string("[") + key + "] is missing");
+    return std::nullopt;
   };
-  section(
-      "color",
-      [&](TableReader* reader) {
-        reader->allow({"width", "height", "fx", "fy", "cx", "cy", "lens", "distortion"});
-        read_intrinsics(reader, &camera.color);
-      },
-      true);
-  section(
-      "depth", [&](TableReader* reader) { read_depth(reader, &camera); }, false);
-  section(
-      "extrinsics", [&](TableReader* reader) { read_extrinsics(reader, &camera.T_color_depth); }, !camera.is_depth_registered);
-  section(
-      "poses", [&](TableReader* reader) { read_poses(reader, &camera); }, false);
+  if (auto color = section("color", true)) {
+    color->allow({"width", "height", "fx", "fy", "cx", "cy", "lens", "distortion"});
+    read_intrinsics(&*color, &camera.color);
+  }
+  if (auto depth = section("depth", false)) read_depth(&*depth, &camera);
+  if (auto extrinsics = section("extrinsics", !camera.is_depth_registered)) read_extrinsics(&*extrinsics, &camera.T_color_depth);
+  if (auto poses = section("poses", false)) read_poses(&*poses, &camera);
   if (!status) return status;
   if (camera.is_depth_registered) camera.depth = camera.color;
   return camera;

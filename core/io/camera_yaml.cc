@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/io/camera_formats.h"
+#include "core/io/camera_file.h"
 #include "core/io/text.h"
 
 namespace camloc {
@@ -80,12 +80,10 @@ std::string lower(std::string text) {
 
 LensModel lens_of(const YAML::Node& node, const std::string& name) {
   const std::string model = lower(name);
-  for (const char* one : {"radtan", "plumb_bob", "rational_polynomial", "none", "pinhole", ""}) {
-    if (model == one) return LensModel::kBrownConrady;
-  }
-  for (const char* one : {"equidistant", "fisheye", "kannalabrandt8"}) {
-    if (model == one) return LensModel::kEquidistant;
-  }
+  constexpr std::array kPlain = {"radtan", "plumb_bob", "rational_polynomial", "none", "pinhole", ""};
+  constexpr std::array kWide = {"equidistant", "fisheye", "kannalabrandt8"};
+  if (std::find(kPlain.begin(), kPlain.end(), model) != kPlain.end()) return LensModel::kBrownConrady;
+  if (std::find(kWide.begin(), kWide.end(), model) != kWide.end()) return LensModel::kEquidistant;
   fail(node, "lens model " + in_quotes(name) + " is not known");
 }
 
@@ -142,13 +140,9 @@ void read_orb_slam(const YAML::Node& root, const std::string& prefix, RgbdCamera
   k->width = pixels(need(root, "Camera.width"), "Camera.width");
   k->height = pixels(need(root, "Camera.height"), "Camera.height");
   const LensModel lens = lens_of(root, scalar_or(root, "Camera.type", "pinhole"));
-  const bool is_wide = lens == LensModel::kEquidistant;
+  const auto names = lens == LensModel::kEquidistant ? std::vector{"k1", "k2", "k3", "k4"} : std::vector{"k1", "k2", "p1", "p2", "k3"};
   std::vector<double> coefficients;
-  if (is_wide) {
-    for (const char* key : {"k1", "k2", "k3", "k4"}) coefficients.push_back(value_or_zero(prefix + key));
-  } else {
-    for (const char* key : {"k1", "k2", "p1", "p2", "k3"}) coefficients.push_back(value_or_zero(prefix + key));
-  }
+  for (const char* name : names) coefficients.push_back(value_or_zero(prefix + name));
   set_distortion(root, lens, coefficients, k);
   for (const char* key : {"DepthMapFactor", "RGBD.DepthMapFactor"}) {
     if (!root[key].IsDefined()) continue;

@@ -1,52 +1,43 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// See frame_selection.h. Bounds follow Python's slice.indices(): a negative bound counts from the end, then both are
+// See select_frames() in sequence.h. Bounds follow Python's slice.indices(): a negative bound counts from the end, then both are
 // clipped into the sequence.
-#include "core/io/frame_selection.h"
-
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string_view>
 
+#include "core/io/sequence.h"
 #include "core/io/text.h"
 
 namespace camloc {
 
 namespace {
 
-struct Slice {
-  std::optional<std::int64_t> start, stop, step;
-};
+/// Start, stop and step.
+using Slice = std::array<std::optional<std::int64_t>, 3>;
 
 Status bad(std::string_view part, const std::string& why) {
   return {ErrorCode::kInvalid, "frame selection " + in_quotes(part) + ": " + why};
 }
 
-/// One bound of a slice: nothing, or an integer.
-Result<std::optional<std::int64_t>> parse_bound(std::string_view bound, std::string_view part) {
-  bound = trimmed(bound);
-  if (bound.empty()) return std::optional<std::int64_t>();
-  const std::optional<std::int64_t> value = parse_int(bound);
-  if (!value) return bad(part, in_quotes(bound) + " is not an integer; expected start:stop:step");
-  return value;
-}
-
 Result<Slice> parse_slice(std::string_view part) {
-  std::optional<std::int64_t> bounds[3];
+  Slice bounds;
   std::size_t count = 0;
   for (std::string_view rest = part;;) {
     if (count == 3) return bad(part, "more than start:stop:step");
     const std::size_t colon = rest.find(':');
-    Result<std::optional<std::int64_t>> bound = parse_bound(rest.substr(0, colon), part);
-    if (!bound) return bound.status();
-    bounds[count++] = *bound;
+    const std::string_view bound = trimmed(rest.substr(0, colon));
+    bounds[count] = parse_int(bound);
+    if (!bound.empty() && !bounds[count]) return bad(part, in_quotes(bound) + " is not an integer; expected start:stop:step");
+    ++count;
     if (colon == std::string_view::npos) break;
     rest.remove_prefix(colon + 1);
   }
   if (bounds[2] == 0) return bad(part, "step must not be zero");
-  return Slice{bounds[0], bounds[1], bounds[2]};
+  return bounds;
 }
 
 /// Where a bound lands among `size` items: counted from the end if negative, then clipped to [low, high].
@@ -56,13 +47,14 @@ std::int64_t clip_bound(std::int64_t bound, std::int64_t size, std::int64_t low,
 }
 
 void mark_slice(const Slice& slice, std::vector<bool>* marks) {
+  const auto& [first, last, stride] = slice;
   const auto size = static_cast<std::int64_t>(marks->size());
-  const std::int64_t step = std::clamp<std::int64_t>(slice.step.value_or(1), -size - 1, size + 1);
+  const std::int64_t step = std::clamp<std::int64_t>(stride.value_or(1), -size - 1, size + 1);
   const bool is_forward = step > 0;
   const std::int64_t low = is_forward ? 0 : -1;
   const std::int64_t high = is_forward ? size : size - 1;
-  const std::int64_t start = slice.start ? clip_bound(*slice.start, size, low, high) : (is_forward ? low : high);
-  const std::int64_t stop = slice.stop ? clip_bound(*slice.stop, size, low, high) : (is_forward ? high : low);
+  const std::int64_t start = first ? clip_bound(*first, size, low, high) : (is_forward ? low : high);
+  const std::int64_t stop = last ? clip_bound(*last, size, low, high) : (is_forward ? high : low);
   for (std::int64_t i = start; is_forward ? i < stop : i > stop; i += step) (*marks)[static_cast<std::size_t>(i)] = true;
 }
 

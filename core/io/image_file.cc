@@ -9,7 +9,6 @@
 #include <array>
 
 #include "core/io/file_bytes.h"
-#include "core/io/image_codecs.h"
 
 namespace camloc {
 
@@ -28,10 +27,22 @@ Status unknown_kind(std::span<const std::uint8_t> bytes, const std::string& name
   return {ErrorCode::kCorrupt, name + ": neither a JPEG nor a PNG image"};
 }
 
-Status decode_bytes(std::span<const std::uint8_t> bytes, const std::string& name, PixelKind kind, ByteImage* image) {
-  if (starts_with(bytes, kJpegMagic)) return decode_jpeg(bytes, name, kind, image);
-  if (starts_with(bytes, kPngMagic)) return decode_png(bytes, name, kind, image);
+/// Without `pixels` only the header is read.
+Result<ImageSize> decode_bytes(std::span<const std::uint8_t> bytes, const std::string& name, PixelKind kind,
+                               std::vector<std::uint8_t>* pixels) {
+  if (starts_with(bytes, kJpegMagic)) return decode_jpeg(bytes, name, kind, pixels);
+  if (starts_with(bytes, kPngMagic)) return decode_png(bytes, name, kind, pixels);
   return unknown_kind(bytes, name);
+}
+
+/// `AnyImage` has pixels, width and height.
+template <typename AnyImage>
+Status decode_into(std::span<const std::uint8_t> bytes, const std::string& name, PixelKind kind, AnyImage* image) {
+  const Result<ImageSize> size = decode_bytes(bytes, name, kind, &image->pixels);
+  if (!size) return size.status();
+  image->width = size->width;
+  image->height = size->height;
+  return Status::ok();
 }
 
 }  // namespace
@@ -43,12 +54,7 @@ Status check_image_size(std::int64_t width, std::int64_t height, const std::stri
 }
 
 Status decode_gray(std::span<const std::uint8_t> bytes, const std::string& name, Image<std::uint8_t>* image) {
-  ByteImage decoded{&image->pixels, 0, 0};
-  Status status = decode_bytes(bytes, name, PixelKind::kGray, &decoded);
-  if (!status) return status;
-  image->width = decoded.width;
-  image->height = decoded.height;
-  return Status::ok();
+  return decode_into(bytes, name, PixelKind::kGray, image);
 }
 
 Status decode_depth(std::span<const std::uint8_t> bytes, const std::string& name, Image<std::uint16_t>* image) {
@@ -60,17 +66,12 @@ Status decode_depth(std::span<const std::uint8_t> bytes, const std::string& name
 
 Result<ColorImage> decode_color(std::span<const std::uint8_t> bytes, const std::string& name) {
   ColorImage image;
-  ByteImage decoded{&image.pixels, 0, 0};
-  if (Status status = decode_bytes(bytes, name, PixelKind::kColor, &decoded); !status) return status;
-  image.width = decoded.width;
-  image.height = decoded.height;
+  if (Status status = decode_into(bytes, name, PixelKind::kColor, &image); !status) return status;
   return image;
 }
 
 Result<ImageSize> decode_image_size(std::span<const std::uint8_t> bytes, const std::string& name) {
-  if (starts_with(bytes, kJpegMagic)) return decode_jpeg_size(bytes, name);
-  if (starts_with(bytes, kPngMagic)) return decode_png_size(bytes, name);
-  return unknown_kind(bytes, name);
+  return decode_bytes(bytes, name, PixelKind::kGray, nullptr);
 }
 
 Status ImageReader::read_gray(const std::string& path, Image<std::uint8_t>* image) {

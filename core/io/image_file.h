@@ -55,4 +55,17 @@ class ImageReader {
   std::vector<std::uint8_t> bytes_;
 };
 
+// What the functions above are made of, for cameras that deliver such bytes. Neither library's error exit (longjmp) leaves these functions,
+// and no object with a destructor lives inside their reach.
+enum class PixelKind { kGray, kColor };
+
+[[nodiscard]] Status check_image_size(std::int64_t width, std::int64_t height, const std::string& name);
+
+/// Into bytes in rows without gaps, one a pixel for kGray, three for kColor. Without `pixels` only the header is read.
+[[nodiscard]] Result<ImageSize> decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& name, PixelKind kind,
+                                            std::vector<std::uint8_t>* pixels);
+[[nodiscard]] Result<ImageSize> decode_png(std::span<const std::uint8_t> bytes, const std::string& name, PixelKind kind,
+                                           std::vector<std::uint8_t>* pixels);
+[[nodiscard]] Status decode_png_depth(std::span<const std::uint8_t> bytes, const std::string& name, Image<std::uint16_t>* image);
+
 }  // namespace camloc

@@ -133,24 +133,24 @@ struct JpegEncoder {
   JpegEncoder& operator=(const JpegEncoder&) = delete;
 
   // Between setjmp and longjmp no object is constructed.
-  bool encode(const std::uint8_t* pixels, int width, int height, int channels, int quality) {
+  bool encode(const PixelRows& image, int quality) {
     info.err = jpeg_std_error(&errors.base);
     errors.base.error_exit = on_jpeg_error;
     errors.base.output_message = on_jpeg_output;
     if (setjmp(errors.way_back) != 0) return false;
     jpeg_create_compress(&info);
     jpeg_mem_dest(&info, &bytes, &size);
-    info.image_width = static_cast<JDIMENSION>(width);
-    info.image_height = static_cast<JDIMENSION>(height);
-    info.input_components = channels;
-    info.in_color_space = channels == 3 ? JCS_RGB : JCS_GRAYSCALE;
+    info.image_width = static_cast<JDIMENSION>(image.width);
+    info.image_height = static_cast<JDIMENSION>(image.height);
+    info.input_components = image.channels;
+    info.in_color_space = image.channels == 3 ? JCS_RGB : JCS_GRAYSCALE;
     jpeg_set_defaults(&info);
     jpeg_set_quality(&info, quality, TRUE);
     jpeg_start_compress(&info, TRUE);
-    const std::size_t row_bytes = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
+    const std::size_t row_bytes = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels);
     while (info.next_scanline < info.image_height) {
       // libjpeg takes rows it does not change through a pointer to non-const.
-      JSAMPROW row = const_cast<JSAMPROW>(pixels + info.next_scanline * row_bytes);
+      JSAMPROW row = const_cast<JSAMPROW>(image.pixels + info.next_scanline * row_bytes);
       jpeg_write_scanlines(&info, &row, 1);
     }
     jpeg_finish_compress(&info);
@@ -160,19 +160,11 @@ struct JpegEncoder {
 
 }  // namespace
 
-Status write_png(const std::string& path, const std::uint8_t* pixels, int width, int height, int channels, PngCompression compression) {
-  assert(channels == 1 || channels == 3);
-  const int color_type = channels == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY;
-  return write_png_layout(
-      path, pixels, {width, height, 8, color_type, static_cast<std::size_t>(width) * static_cast<std::size_t>(channels), compression});
-}
-
-Status write_png(const std::string& path, const Image<std::uint8_t>& gray, PngCompression compression) {
-  return write_png(path, gray.pixels.data(), gray.width, gray.height, 1, compression);
-}
-
-Status write_png(const std::string& path, const ColorImage& color) {
-  return write_png(path, color.pixels.data(), color.width, color.height, 3);
+Status write_png(const std::string& path, const PixelRows& image, PngCompression compression) {
+  assert(image.channels == 1 || image.channels == 3);
+  const int color_type = image.channels == 3 ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_GRAY;
+  const std::size_t row_bytes = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.channels);
+  return write_png_layout(path, image.pixels, {image.width, image.height, 8, color_type, row_bytes, compression});
 }
 
 Status write_depth_png(const std::string& path, const Image<std::uint16_t>& depth, PngCompression compression) {
@@ -181,15 +173,11 @@ Status write_depth_png(const std::string& path, const Image<std::uint16_t>& dept
                           {depth.width, depth.height, 16, PNG_COLOR_TYPE_GRAY, static_cast<std::size_t>(depth.width) * 2, compression});
 }
 
-Status write_jpeg(const std::string& path, const std::uint8_t* pixels, int width, int height, int channels, int quality) {
-  assert(channels == 1 || channels == 3);
+Status write_jpeg(const std::string& path, const PixelRows& image, int quality) {
+  assert(image.channels == 1 || image.channels == 3);
   JpegEncoder encoder;
-  if (!encoder.encode(pixels, width, height, channels, quality)) return {ErrorCode::kIo, path + ": cannot encode the image"};
+  if (!encoder.encode(image, quality)) return {ErrorCode::kIo, path + ": cannot encode the image"};
   return write_bytes(path, encoder.bytes, encoder.size);
-}
-
-Status write_jpeg(const std::string& path, const ColorImage& color, int quality) {
-  return write_jpeg(path, color.pixels.data(), color.width, color.height, 3, quality);
 }
 
 }  // namespace camloc

@@ -21,18 +21,24 @@ enum class PngCompression : std::uint8_t {
   kSmall,    ///< for archives; images as kFast; depth 19 ms, 73 kB
 };
 
-/// `pixels`: rows of width * channels bytes without gaps; channels 1 (grey) or 3 (red, green, blue). kIo names the file and
-/// the reason; a file that could not be written whole is removed.
-[[nodiscard]] Status write_png(const std::string& path, const std::uint8_t* pixels, int width, int height, int channels,
-                               PngCompression compression = PngCompression::kPicture);
-[[nodiscard]] Status write_png(const std::string& path, const Image<std::uint8_t>& gray,
-                               PngCompression compression = PngCompression::kPicture);
-[[nodiscard]] Status write_png(const std::string& path, const ColorImage& color);
+/// Rows of width * channels bytes without gaps, owned by somebody else; channels 1 (grey) or 3 (red, green, blue).
+struct PixelRows {
+  const std::uint8_t* pixels = nullptr;
+  int width = 0, height = 0, channels = 0;
+
+  PixelRows(const std::uint8_t* data, int columns, int rows, int depth) : pixels(data), width(columns), height(rows), channels(depth) {}
+  PixelRows(const Image<std::uint8_t>& gray)  // NOLINT(google-explicit-constructor)
+      : PixelRows(gray.pixels.data(), gray.width, gray.height, 1) {}
+  PixelRows(const ColorImage& color)  // NOLINT(google-explicit-constructor)
+      : PixelRows(color.pixels.data(), color.width, color.height, 3) {}
+};
+
+/// kIo names the file and the reason; a file that could not be written whole is removed.
+[[nodiscard]] Status write_png(const std::string& path, const PixelRows& image, PngCompression compression = PngCompression::kPicture);
 /// 16-bit grey, the raw units of a depth camera.
 [[nodiscard]] Status write_depth_png(const std::string& path, const Image<std::uint16_t>& depth,
                                      PngCompression compression = PngCompression::kPicture);
 /// As write_png; quality 1 to 100.
-[[nodiscard]] Status write_jpeg(const std::string& path, const std::uint8_t* pixels, int width, int height, int channels, int quality = 95);
-[[nodiscard]] Status write_jpeg(const std::string& path, const ColorImage& color, int quality = 95);
+[[nodiscard]] Status write_jpeg(const std::string& path, const PixelRows& image, int quality = 95);
 
 }  // namespace camloc

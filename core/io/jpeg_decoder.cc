@@ -11,7 +11,7 @@
 #include <jerror.h>
 #include <jpeglib.h>
 
-#include "core/io/image_codecs.h"
+#include "core/io/image_file.h"
 
 namespace camloc {
 
@@ -84,10 +84,13 @@ struct JpegDecoder {
 
 }  // namespace
 
-Status decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& name, PixelKind kind, ByteImage* image) {
+Result<ImageSize> decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& name, PixelKind kind,
+                              std::vector<std::uint8_t>* pixels) {
   JpegDecoder decoder;
   if (!decoder.read_header(bytes)) return decoder.broken(name);
   if (Status status = check_image_size(decoder.info.image_width, decoder.info.image_height, name); !status) return status;
+  const ImageSize size{static_cast<int>(decoder.info.image_width), static_cast<int>(decoder.info.image_height)};
+  if (pixels == nullptr) return size;
   const J_COLOR_SPACE space = decoder.info.jpeg_color_space;
   if (space != JCS_GRAYSCALE && space != JCS_YCbCr && space != JCS_RGB) {
     return {ErrorCode::kUnsupported,
@@ -95,18 +98,9 @@ Status decode_jpeg(std::span<const std::uint8_t> bytes, const std::string& name,
   }
   if (!decoder.start(kind)) return decoder.broken(name);
   const std::size_t row_bytes = decoder.info.output_width * static_cast<std::size_t>(decoder.info.output_components);
-  image->pixels->resize(row_bytes * decoder.info.output_height);
-  if (!decoder.read_rows(image->pixels->data(), row_bytes)) return decoder.broken(name);
-  image->width = static_cast<int>(decoder.info.output_width);
-  image->height = static_cast<int>(decoder.info.output_height);
-  return Status::ok();
-}
-
-Result<ImageSize> decode_jpeg_size(std::span<const std::uint8_t> bytes, const std::string& name) {
-  JpegDecoder decoder;
-  if (!decoder.read_header(bytes)) return decoder.broken(name);
-  if (Status status = check_image_size(decoder.info.image_width, decoder.info.image_height, name); !status) return status;
-  return ImageSize{static_cast<int>(decoder.info.image_width), static_cast<int>(decoder.info.image_height)};
+  pixels->resize(row_bytes * decoder.info.output_height);
+  if (!decoder.read_rows(pixels->data(), row_bytes)) return decoder.broken(name);
+  return size;
 }
 
 }  // namespace camloc

@@ -8,7 +8,7 @@
 #include <csetjmp>
 #include <cstring>
 
-#include "core/io/image_codecs.h"
+#include "core/io/image_file.h"
 
 namespace camloc {
 
@@ -122,22 +122,22 @@ std::string describe(const PngDecoder& decoder) {
 
 }  // namespace
 
-Status decode_png(std::span<const std::uint8_t> bytes, const std::string& name, PixelKind kind, ByteImage* image) {
+Result<ImageSize> decode_png(std::span<const std::uint8_t> bytes, const std::string& name, PixelKind kind,
+                             std::vector<std::uint8_t>* pixels) {
   PngDecoder decoder;
   if (!decoder.read_header(bytes)) return decoder.broken(name);
   if (Status status = check_image_size(decoder.width, decoder.height, name); !status) return status;
+  if (pixels == nullptr) return ImageSize{decoder.width, decoder.height};
   if (decoder.bit_depth > 8) return {ErrorCode::kUnsupported, name + ": " + describe(decoder) + ", expected 8 bits"};
   const bool has_color = (decoder.color_type & PNG_COLOR_MASK_COLOR) != 0;
   const bool wants_color = kind == PixelKind::kColor;
   if (!decoder.start_bytes(wants_color)) return decoder.broken(name);
-  const std::size_t row_bytes = static_cast<std::size_t>(decoder.width) * (wants_color || has_color ? 3 : 1);
-  image->pixels->resize(row_bytes * static_cast<std::size_t>(decoder.height));
-  if (!decoder.read_rows(image->pixels->data(), row_bytes)) return decoder.broken(name);
-  image->width = decoder.width;
-  image->height = decoder.height;
-  if (has_color && !wants_color)
-    squeeze_to_gray(image->pixels, static_cast<std::size_t>(decoder.width) * static_cast<std::size_t>(decoder.height));
-  return Status::ok();
+  const std::size_t num_pixels = static_cast<std::size_t>(decoder.width) * static_cast<std::size_t>(decoder.height);
+  const std::size_t pixel_bytes = wants_color || has_color ? 3 : 1;
+  pixels->resize(num_pixels * pixel_bytes);
+  if (!decoder.read_rows(pixels->data(), static_cast<std::size_t>(decoder.width) * pixel_bytes)) return decoder.broken(name);
+  if (has_color && !wants_color) squeeze_to_gray(pixels, num_pixels);
+  return ImageSize{decoder.width, decoder.height};
 }
 
 Status decode_png_depth(std::span<const std::uint8_t> bytes, const std::string& name, Image<std::uint16_t>* image) {
@@ -152,13 +152,6 @@ Status decode_png_depth(std::span<const std::uint8_t> bytes, const std::string& 
   const std::size_t row_bytes = static_cast<std::size_t>(decoder.width) * sizeof(std::uint16_t);
   if (!decoder.read_rows(reinterpret_cast<std::uint8_t*>(image->pixels.data()), row_bytes)) return decoder.broken(name);
   return Status::ok();
-}
-
-Result<ImageSize> decode_png_size(std::span<const std::uint8_t> bytes, const std::string& name) {
-  PngDecoder decoder;
-  if (!decoder.read_header(bytes)) return decoder.broken(name);
-  if (Status status = check_image_size(decoder.width, decoder.height, name); !status) return status;
-  return ImageSize{decoder.width, decoder.height};
 }
 
 }  // namespace camloc

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/geometry/gravity.h"
 #include "core/geometry/rigid3.h"
 
 namespace camloc {
@@ -51,5 +52,25 @@ struct Sequence {
 /// Pose at a time from an ordered trajectory: interpolated between neighbours at most 0.1 s apart, or the nearest
 /// within 0.5 ms.
 [[nodiscard]] std::optional<Rigid3> pose_at(const std::vector<StampedPose>& trajectory, std::int64_t stamp_ns);
+
+/// Which frames of a recording: "start:stop:step[,...]" by Python's slice rules on the frame index. Ascending indices below
+/// `num_frames` that `include` (empty = all) names and `exclude` (empty = none) does not.
+[[nodiscard]] Result<std::vector<std::size_t>> select_frames(const std::string& include, const std::string& exclude,
+                                                             std::size_t num_frames);
+
+// Accelerometer files beside a recording: TUM RGB-D's accelerometer.txt, "timestamp ax ay az" in seconds and m/s^2 (or g). The benchmark
+// does not say which way the axes point; see kinect_R_camera_accelerometer() in core/geometry/gravity.h.
+struct AccelerometerSample {
+  std::int64_t stamp_ns = 0;
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  ///< m/s^2, axes of the sensor; at rest it points up
+};
+
+/// Readings of length about 1 are taken as multiples of standard gravity. Stamps ascend. Errors name file and line; kInvalid
+/// also where the typical length is neither that of m/s^2 nor of g.
+[[nodiscard]] Result<std::vector<AccelerometerSample>> read_accelerometer(const std::string& path);
+
+/// The readings at whose time the camera has a pose (pose_at), with its orientation.
+[[nodiscard]] std::vector<OrientedReading> with_orientations(const std::vector<AccelerometerSample>& samples,
+                                                             const std::vector<StampedPose>& trajectory);
 
 }  // namespace camloc

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// See text.h.
 #include "core/io/text.h"
 
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 
 namespace camloc {
 
@@ -94,8 +94,47 @@ std::optional<std::int64_t> parse_seconds_ns(std::string_view text) {
   return is_negative ? -ns : ns;
 }
 
+Status read_stamped_rows(std::string_view text, const std::string& path, const std::string& columns, const char* value, double largest,
+                         const StampedRowReader& on_row) {
+  const std::size_t num_columns = split_fields(columns).size();
+  std::optional<std::int64_t> last_ns;
+  std::vector<double> values;
+  for (const auto& [line, number] : content_lines(text)) {
+    const std::vector<std::string_view> fields = split_fields(line);
+    if (fields.size() != num_columns)
+      return line_error(path, number, std::to_string(fields.size()) + " fields, expected '" + columns + "'");
+    const std::optional<std::int64_t> stamp_ns = parse_seconds_ns(fields[0]);
+    if (!stamp_ns) return line_error(path, number, "stamp " + in_quotes(fields[0]) + " is not a time in seconds");
+    values.clear();
+    for (const std::string_view field : std::span(fields).subspan(1)) {
+      values.push_back(parse_double(field).value_or(std::nan("")));
+      if (!(std::abs(values.back()) <= largest)) return line_error(path, number, in_quotes(field) + " is not " + value);
+    }
+    if (const Status status = on_row(*stamp_ns, values); !status) return line_error(path, number, status.message());
+    if (last_ns && *stamp_ns < *last_ns) return line_error(path, number, "stamp is before the one above it; sort the file by time");
+    last_ns = stamp_ns;
+  }
+  return Status::ok();
+}
+
 Status line_error(const std::string& path, int line, const std::string& what) {
   return {ErrorCode::kInvalid, path + ":" + std::to_string(line) + ": " + what};
+}
+
+std::string in_double_quotes(std::string_view text, bool is_ascii) {
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f || (is_ascii && byte > 0x7f)) {
+      std::array<char, 8> code{};
+      std::snprintf(code.data(), code.size(), "\\u%04x", byte);
+      result += code.data();
+    } else {
+      if (c == '"' || c == '\\') result += '\\';
+      result += c;
+    }
+  }
+  return result + "\"";
 }
 
 std::string in_quotes(std::string_view text) {

@@ -5,7 +5,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,8 +33,17 @@ struct TextLine {
 /// Decimal seconds to nanoseconds. Digits are taken as they are: a double holds epoch seconds only to 0.2 us.
 [[nodiscard]] std::optional<std::int64_t> parse_seconds_ns(std::string_view text);
 
+/// Lines "timestamp a b ...": `columns` lists their names, `value` says what an `a` or `b` is, of at most `largest` in size. Stamps,
+/// decimal seconds, ascend. Errors name `path` and line; `on_row` gives its own without.
+using StampedRowReader = std::function<Status(std::int64_t stamp_ns, std::span<const double> values)>;
+[[nodiscard]] Status read_stamped_rows(std::string_view text, const std::string& path, const std::string& columns, const char* value,
+                                       double largest, const StampedRowReader& on_row);
+
 /// "path:line: what".
 [[nodiscard]] Status line_error(const std::string& path, int line, const std::string& what);
+/// In double quotes, as TOML and JSON want a text: quotes, backslashes and control characters are escaped. `is_ascii`: so are all bytes
+/// that are no ASCII, as if they were Latin-1 (paths may hold any).
+[[nodiscard]] std::string in_double_quotes(std::string_view text, bool is_ascii = false);
 /// Text from outside, fit for a one-line message: quoted, cut at 40 characters, control characters replaced.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 

@@ -4,10 +4,10 @@
 // Poses over time. A TUM file is read line by line, a 7-Scenes recording has one 4x4 matrix a frame; both become rigid
 // transforms by taking the nearest rotation. pose_at() interpolates between neighbours. See sequence.h.
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <system_error>
 
 #include "core/io/file_bytes.h"
@@ -22,25 +22,6 @@ constexpr double kMaxNormError = 0.05;      // of a quaternion; files carry four
 constexpr double kMaxRotationError = 0.05;  // of R^T R - I; recorded files are off by 4e-4
 constexpr std::int64_t kNearestNs = 500'000;
 constexpr double kMaxGapNs = 1e8;  // between the poses that are interpolated
-
-Result<StampedPose> parse_tum_line(const std::string& path, const TextLine& line) {
-  const std::vector<std::string_view> fields = split_fields(line.text);
-  if (fields.size() != 8) {
-    return line_error(path, line.number, std::to_string(fields.size()) + " fields, expected 'timestamp tx ty tz qx qy qz qw'");
-  }
-  const std::optional<std::int64_t> stamp_ns = parse_seconds_ns(fields[0]);
-  if (!stamp_ns) return line_error(path, line.number, "stamp " + in_quotes(fields[0]) + " is not a time in seconds");
-  std::array<double, 7> v{};
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    const std::optional<double> value = parse_double(fields[i + 1]);
-    if (!value || !std::isfinite(*value)) return line_error(path, line.number, in_quotes(fields[i + 1]) + " is not a number");
-    v[i] = *value;
-  }
-  Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
-  if (!(std::abs(rotation.norm() - 1) <= kMaxNormError)) return line_error(path, line.number, "the quaternion is not of unit length");
-  rotation.normalize();
-  return StampedPose{*stamp_ns, {rotation, {v[0], v[1], v[2]}}};
-}
 
 /// 4x4 row-major, camera to world. Non-finite numbers mark a frame without a pose in some recordings.
 Result<std::optional<Rigid3>> read_pose_matrix(const std::string& path) {
@@ -74,23 +55,12 @@ Result<std::vector<std::optional<Rigid3>>> read_pose_matrices(const Sequence& se
   bool has_any_file = false;
   for (const SequenceFrame& frame : sequence.frames) {
     Result<std::optional<Rigid3>> T_world_camera = read_pose_matrix(pose_path_of(frame));
-    if (T_world_camera) {
-      has_any_file = true;
-      poses.push_back(*T_world_camera);
-    } else if (T_world_camera.status().code() == ErrorCode::kNotFound) {
-      poses.emplace_back();
-    } else {
-      return T_world_camera.status();
-    }
+    if (!T_world_camera && T_world_camera.status().code() != ErrorCode::kNotFound) return T_world_camera.status();
+    has_any_file = has_any_file || T_world_camera.is_ok();
+    poses.push_back(T_world_camera ? *T_world_camera : std::nullopt);
   }
   if (!has_any_file) return Status(ErrorCode::kNotFound, sequence.folder + ": no frame-*.pose.txt, the recording has no poses of its own");
   return poses;
-}
-
-void append_fixed(double value, int digits, std::string* line) {
-  char text[400];  // enough for the largest double
-  const auto end = std::to_chars(text, text + sizeof(text), value, std::chars_format::fixed, digits).ptr;
-  line->append(text, end);
 }
 
 }  // namespace
@@ -99,14 +69,15 @@ Result<std::vector<StampedPose>> read_tum_trajectory(const std::string& path) {
   Result<std::string> text = read_file_text(path);
   if (!text) return text.status();
   std::vector<StampedPose> poses;
-  for (const TextLine& line : content_lines(*text)) {
-    Result<StampedPose> pose = parse_tum_line(path, line);
-    if (!pose) return pose.status();
-    if (!poses.empty() && pose->stamp_ns < poses.back().stamp_ns) {
-      return line_error(path, line.number, "stamp is before the one above it; sort the file by time");
-    }
-    poses.push_back(*pose);
-  }
+  const auto add = [&poses](std::int64_t stamp_ns, std::span<const double> v) -> Status {
+    Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
+    if (!(std::abs(rotation.norm() - 1) <= kMaxNormError)) return {ErrorCode::kInvalid, "the quaternion is not of unit length"};
+    rotation.normalize();
+    poses.push_back({stamp_ns, {rotation, {v[0], v[1], v[2]}}});
+    return Status::ok();
+  };
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  if (Status status = read_stamped_rows(*text, path, "timestamp tx ty tz qx qy qz qw", "a number", kLargest, add); !status) return status;
   return poses;
 }
 
@@ -119,8 +90,9 @@ std::string format_tum_line(std::int64_t stamp_ns, const Rigid3& T_map_camera) {
   const Eigen::Vector3d& t = T_map_camera.translation;
   const Eigen::Quaterniond& q = T_map_camera.rotation;
   for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) {
+    char text[400];  // enough for the largest double
     line += ' ';
-    append_fixed(value, 9, &line);
+    line.append(text, std::to_chars(text, text + sizeof(text), value, std::chars_format::fixed, 9).ptr);
   }
   return line;
 }

@@ -13,7 +13,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/io/replace_file.h"
+#include "core/io/file_bytes.h"
 #include "core/map/landmark_codes.h"
 #include "core/map/map_format.h"
 #include "core/map/map_sections.h"

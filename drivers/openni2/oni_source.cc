@@ -9,8 +9,8 @@
 #include <span>
 #include <utility>
 
-#include "core/io/frame_selection.h"
 #include "core/io/image_file.h"
+#include "core/io/sequence.h"
 #include "drivers/openni2/depth_codec.h"
 #include "drivers/openni2/field_of_view.h"
 #include "drivers/openni2/oni_file.h"

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "core/io/image_codecs.h"
+#include "core/io/image_file.h"
 #include "drivers/packed_pixels.h"
 
 namespace camloc {
@@ -72,16 +72,15 @@ void gray_row(const V4l2ImageLayout& layout, const std::uint8_t* row, unsigned s
 /// Only a JPEG of the size that was agreed on is decoded: a broken header must not choose how much memory is taken.
 Status decode_frame(const V4l2ImageLayout& layout, const V4l2Planes& planes, PixelKind kind, Image<std::uint8_t>* image) {
   static const std::string kName = "MJPEG frame";
-  const Result<ImageSize> size = decode_jpeg_size(planes[0], kName);
+  const Result<ImageSize> size = decode_jpeg(planes[0], kName, kind, nullptr);
   if (!size) return size.status();
   if (size->width != layout.width || size->height != layout.height) {
     return {ErrorCode::kCorrupt, kName + " of " + std::to_string(size->width) + "x" + std::to_string(size->height) + " pixels where " +
                                      std::to_string(layout.width) + "x" + std::to_string(layout.height) + " was agreed on"};
   }
-  ByteImage decoded{&image->pixels, 0, 0};
-  if (Status status = decode_jpeg(planes[0], kName, kind, &decoded); !status) return status;
-  image->width = decoded.width;
-  image->height = decoded.height;
+  if (Status status = decode_jpeg(planes[0], kName, kind, &image->pixels).status(); !status) return status;
+  image->width = size->width;
+  image->height = size->height;
   return Status::ok();
 }
 

@@ -15,7 +15,7 @@
 #include <tuple>
 #include <vector>
 
-#include "core/io/image_codecs.h"
+#include "core/io/image_file.h"
 
 namespace camloc {
 

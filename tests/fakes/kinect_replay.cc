@@ -7,7 +7,6 @@
 
 #include <cstring>
 
-#include "core/io/frame_selection.h"
 #include "core/io/sequence.h"
 #include "tests/fakes/kinect_frames.h"
 

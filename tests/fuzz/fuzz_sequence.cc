@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <string>
 
-#include "core/io/frame_selection.h"
 #include "core/io/sequence.h"
 #include "drivers/source_url.h"
 #include "tests/fuzz/scratch_folder.h"

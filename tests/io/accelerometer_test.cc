@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/io/accelerometer.h"
-
+#include "core/io/sequence.h"
 #include "tests/drivers/test_folder.h"
 
 namespace camloc {

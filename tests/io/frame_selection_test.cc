@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "core/io/frame_selection.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
+
+#include "core/io/sequence.h"
 
 namespace camloc {
 namespace {

@@ -27,7 +27,7 @@ TEST(ImageWriter, NoCompressionChangesAPixel) {
   const ColorImage color = smooth_color(61, 47, 3);
   const Image<std::uint16_t> depth = ramp_depth(61, 47, 9);
   for (const PngCompression compression : {PngCompression::kPicture, PngCompression::kFast, PngCompression::kSmall}) {
-    ASSERT_TRUE(write_png(folder / "c.png", color.pixels.data(), color.width, color.height, 3, compression).is_ok());
+    ASSERT_TRUE(write_png(folder / "c.png", color, compression).is_ok());
     EXPECT_EQ(ImageReader().read_color(folder / "c.png")->pixels, color.pixels);
     ASSERT_TRUE(write_depth_png(folder / "d.png", depth, compression).is_ok());
     Image<std::uint16_t> read;

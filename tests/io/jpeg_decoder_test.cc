@@ -37,7 +37,7 @@ TEST(JpegDecoder, GrayFromColorHasTheLumaOfItsColors) {
 TEST(JpegDecoder, GrayImage) {
   const TestFolder folder;
   const std::vector<std::uint8_t> pixels(20 * 10, 77);
-  ASSERT_TRUE(write_jpeg(folder / "a.jpg", pixels.data(), 20, 10, 1));
+  ASSERT_TRUE(write_jpeg(folder / "a.jpg", {pixels.data(), 20, 10, 1}));
   Image<std::uint8_t> gray;
   ASSERT_TRUE(ImageReader().read_gray(folder / "a.jpg", &gray).is_ok());
   EXPECT_EQ(gray.pixels, pixels);

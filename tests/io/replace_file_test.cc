@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The new bytes or the old ones, and nothing else in the folder.
-#include "core/io/replace_file.h"
-
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "core/io/file_bytes.h"
 #include "tests/drivers/test_folder.h"
 
 namespace camloc {

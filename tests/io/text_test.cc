@@ -45,6 +45,26 @@ TEST(Text, StampsThatAreNotSeconds) {
   }
 }
 
+TEST(Text, DoubleQuotesEscapeWhatTomlAndJsonDoNotTake) {
+  EXPECT_EQ(in_double_quotes("a \"b\" \\ \n\x7f"), "\"a \\\"b\\\" \\\\ \\u000a\\u007f\"");
+  EXPECT_EQ(in_double_quotes("\xc3\xa4"), "\"\xc3\xa4\"");
+  EXPECT_EQ(in_double_quotes("\xc3\xa4", true), "\"\\u00c3\\u00a4\"");
+}
+
+TEST(Text, StampedRowsAreNumbersInOrderOfTime) {
+  const auto message_of = [](const char* text) {
+    const auto no_negatives = [](std::int64_t, std::span<const double> values) {
+      return values[1] < 0 ? Status(ErrorCode::kInvalid, "below zero") : Status::ok();
+    };
+    return read_stamped_rows(text, "a.txt", "timestamp x y", "a length", 9, no_negatives).message();
+  };
+  EXPECT_EQ(message_of("# x\n1 2 3\n1,9,9\n"), "");
+  EXPECT_EQ(message_of("1 2\n"), "a.txt:1: 2 fields, expected 'timestamp x y'");
+  EXPECT_EQ(message_of("1 2 3\n\n1 2 10\n"), "a.txt:3: '10' is not a length");
+  EXPECT_EQ(message_of("1 2 3\n2 2 -1\n"), "a.txt:2: below zero");
+  EXPECT_EQ(message_of("2 2 3\n1 2 3\n"), "a.txt:2: stamp is before the one above it; sort the file by time");
+}
+
 TEST(Text, MessagesStayOnOneLine) {
   EXPECT_EQ(in_quotes("a\nb"), "'a?b'");
   EXPECT_LT(in_quotes(std::string(500, 'x')).size(), 60U);

@@ -13,7 +13,7 @@
 #include <map>
 
 #include "core/io/camera_file.h"
-#include "core/io/replace_file.h"
+#include "core/io/file_bytes.h"
 #include "core/io/sequence.h"
 
 namespace camloc::sim {

@@ -9,8 +9,8 @@
 #include <memory>
 
 #include "core/io/camera_file.h"
+#include "core/io/file_bytes.h"
 #include "core/io/image_writer.h"
-#include "core/io/replace_file.h"
 #include "drivers/sources.h"
 #include "tools/camloc-camera/calibration.h"
 #include "tools/camloc-camera/commands.h"

@@ -9,8 +9,8 @@
 #include <memory>
 
 #include "core/io/camera_file.h"
+#include "core/io/file_bytes.h"
 #include "core/io/image_writer.h"
-#include "core/io/replace_file.h"
 #include "core/io/sequence.h"
 #include "tools/camloc-map/commands.h"
 #include "tools/common/terminal_observer.h"

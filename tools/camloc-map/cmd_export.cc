@@ -6,7 +6,7 @@
 #include <map>
 #include <memory>
 
-#include "core/io/replace_file.h"
+#include "core/io/file_bytes.h"
 #include "tools/camloc-map/commands.h"
 #include "tools/common/command_line.h"
 #include "tools/common/text_format.h"

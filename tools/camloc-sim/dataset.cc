@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "core/io/camera_file.h"
-#include "core/io/replace_file.h"
+#include "core/io/file_bytes.h"
 
 namespace camloc::sim {
 namespace {

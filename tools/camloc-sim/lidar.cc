@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/io/replace_file.h"
+#include "core/io/file_bytes.h"
 #include "tools/camloc-sim/normal_table.h"
 
 namespace camloc::sim {

@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/io/file_bytes.h"
 #include "core/io/image_writer.h"
-#include "core/io/replace_file.h"
 #include "core/io/sequence.h"
 
 namespace camloc::sim {
@@ -62,8 +62,7 @@ Timeline timeline(const World& world, const RecordingOptions& options) {
 }
 
 Status write_frame(const FrameBuffer& frame, const RecordingOptions& options, const std::string& folder, const std::string& name) {
-  Status status = options.jpeg_quality > 0 ? write_jpeg(folder + "/rgb/" + name + ".jpg", frame.gray.pixels.data(), frame.gray.width,
-                                                        frame.gray.height, 1, options.jpeg_quality)
+  Status status = options.jpeg_quality > 0 ? write_jpeg(folder + "/rgb/" + name + ".jpg", frame.gray, options.jpeg_quality)
                                            : write_png(folder + "/rgb/" + name + ".png", frame.gray);
   return status ? write_depth_png(folder + "/depth/" + name + ".png", frame.depth) : status;
 }

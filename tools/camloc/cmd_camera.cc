@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/io/camera_file.h"
-#include "core/io/replace_file.h"
+#include "core/io/file_bytes.h"
 #include "drivers/sources.h"
 #include "tools/camloc/commands.h"
 #include "tools/common/command_line.h"

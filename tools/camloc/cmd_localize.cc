@@ -6,10 +6,10 @@
 #include <map>
 #include <memory>
 
-#include "core/io/replace_file.h"
+#include "core/io/file_bytes.h"
 #include "tools/camloc/commands.h"
-#include "tools/common/json_text.h"
 #include "tools/common/command_line.h"
+#include "tools/common/json_text.h"
 #include "tools/common/terminal_observer.h"
 #include "tools/common/text_format.h"
 #include "tools/common/trajectory_file.h"

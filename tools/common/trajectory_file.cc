@@ -8,7 +8,7 @@
 #include <span>
 #include <sstream>
 
-#include "core/io/replace_file.h"
+#include "core/io/file_bytes.h"
 #include "core/io/sequence.h"
 #include "tools/common/text_format.h"
 

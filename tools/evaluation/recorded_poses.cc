@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/evaluation/recorded_poses.h"
 
-#include "core/io/frame_selection.h"
+#include "core/io/sequence.h"
 
 namespace camloc::tools {
 

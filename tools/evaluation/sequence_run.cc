@@ -7,7 +7,7 @@
 #include <chrono>
 
 #include "core/io/camera_file.h"
-#include "core/io/frame_selection.h"
+#include "core/io/sequence.h"
 #include "drivers/sources.h"
 #include "tools/common/command_line.h"
 

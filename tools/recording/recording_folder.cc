@@ -16,7 +16,7 @@
 
 #include "core/geometry/gravity.h"
 #include "core/io/camera_file.h"
-#include "core/io/replace_file.h"
+#include "core/io/file_bytes.h"
 #include "tools/common/text_format.h"
 
 namespace camloc::tools {
@@ -135,8 +135,8 @@ Result<std::uint64_t> RecordingFolder::write_images(const FrameBuffer& frame, st
   const int width = format_.is_color ? frame.color.width : frame.gray.width,
             height = format_.is_color ? frame.color.height : frame.gray.height;
   const int channels = format_.is_color ? 3 : 1;
-  Status status = format_.is_jpeg ? write_jpeg(color_path, pixels, width, height, channels, format_.jpeg_quality)
-                                  : write_png(color_path, pixels, width, height, channels, format_.compression);
+  Status status = format_.is_jpeg ? write_jpeg(color_path, {pixels, width, height, channels}, format_.jpeg_quality)
+                                  : write_png(color_path, {pixels, width, height, channels}, format_.compression);
   const bool has_depth = !frame.depth.pixels.empty();
   if (status && has_depth) status = write_depth_png(depth_path, frame.depth, format_.compression);
   std::error_code ignored;

@@ -4,7 +4,7 @@
 // Trajectories survive being written and read; damaged ones are named with their line.
 #include "tools/common/trajectory_file.h"
 
-#include "core/io/replace_file.h"
+#include "core/io/file_bytes.h"
 #include "tests/tools/command_runner.h"
 
 namespace camloc::tools {

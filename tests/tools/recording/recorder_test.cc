@@ -10,7 +10,6 @@
 #include <fstream>
 #include <set>
 
-#include "core/io/accelerometer.h"
 #include "core/io/sequence.h"
 #include "tests/tools/command_runner.h"
 #include "tests/tools/live_source.h"

@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <unordered_map>
 
-#include "core/io/replace_file.h"
+#include "core/io/file_bytes.h"
 #include "core/map/map_writer.h"
 #include "drivers/sources.h"
 #include "tools/common/frame_reading.h"

@@ -5,7 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "core/io/frame_selection.h"
 #include "core/io/sequence.h"
 #include "tools/mapping/colmap/colmap_model.h"
 

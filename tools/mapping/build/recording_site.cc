@@ -10,7 +10,7 @@
 #include <set>
 #include <unordered_map>
 
-#include "core/io/accelerometer.h"
+#include "core/io/sequence.h"
 #include "drivers/sources.h"
 #include "tools/common/frame_reading.h"
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "core/io/replace_file.h"
+#include "core/io/file_bytes.h"
 #include "tools/common/text_format.h"
 #include "tools/mapping/colmap/colmap_model.h"
 
