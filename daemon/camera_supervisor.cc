@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// The ladder and its deadlines.
 #include "daemon/camera_supervisor.h"
 
 #include <algorithm>

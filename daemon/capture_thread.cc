@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// Open, stream, recover, retry.
 #include "daemon/capture_thread.h"
 
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "daemon/clock.h"
@@ -15,6 +14,7 @@ namespace camloc {
 namespace {
 
 constexpr std::int64_t kHealthPeriod_ns = 200'000'000;
+constexpr std::int64_t kFrameTimeout_ms = 100;  // given to FrameSource::next() at most; bounds the time to stop
 
 std::string overdue_text(std::int64_t silence_ns, const char* step) {
   return "no frame for " + std::to_string(silence_ns / 1'000'000) + " ms, " + step;
@@ -23,14 +23,8 @@ std::string overdue_text(std::int64_t silence_ns, const char* step) {
 }  // namespace
 
 const char* to_string(CapturePhase phase) {
-  switch (phase) {
-    case CapturePhase::kOpening: return "opening";
-    case CapturePhase::kStreaming: return "streaming";
-    case CapturePhase::kStalled: return "stalled";
-    case CapturePhase::kUnavailable: return "missing";
-    case CapturePhase::kEnded: break;
-  }
-  return "ended";
+  constexpr std::array kNames = {"opening", "streaming", "stalled", "missing", "ended"};
+  return kNames[static_cast<std::size_t>(phase)];
 }
 
 CaptureThread::CaptureThread(const CaptureOptions& options, OpenSource open_source, int wake_fd) : shared_(std::make_shared<Shared>()) {
@@ -72,32 +66,18 @@ CaptureReport CaptureThread::report() const {
 }
 
 CaptureCounts CaptureThread::counts() const {
-  const auto get = [](const auto& counter) { return counter.load(std::memory_order_relaxed); };
-  CaptureCounts counts;
-  counts.turns = get(shared_->turns);
-  counts.frames_received = get(shared_->frames_received);
-  counts.frames_corrupt = get(shared_->frames_corrupt);
-  counts.stalls = get(shared_->stalls);
-  counts.stream_restarts = get(shared_->stream_restarts);
-  counts.device_reopens = get(shared_->device_reopens);
-  counts.device_resets = get(shared_->device_resets);
-  counts.last_recovery_ns = get(shared_->last_recovery_ns);
-  return counts;
-}
-
-FrameSourceHealth CaptureThread::health() const {
   const std::lock_guard lock(shared_->mutex);
-  return shared_->health;
+  return shared_->counts;
 }
 
 void CaptureThread::Shared::run() {
   bool was_open = false;
   while (!should_stop) {
-    turns.fetch_add(1, std::memory_order_relaxed);
+    count(&CaptureCounts::turns);
     Result<std::unique_ptr<FrameSource>> source = open_source(options.url);
     Status status = source.status();
     if (source) {
-      if (was_open) device_reopens.fetch_add(1, std::memory_order_relaxed);
+      if (was_open) count(&CaptureCounts::device_reopens);
       was_open = true;
       supervisor.on_opened(monotonic_ns(), (*source)->info().stamp_clock == StampClock::kMonotonic);
       const bool is_stalled = supervisor.is_stalled();
@@ -124,7 +104,7 @@ void CaptureThread::Shared::run() {
 // Until the source fails or ends (its status is returned), is to be opened again (ok), or a stop is asked for.
 Status CaptureThread::Shared::stream(FrameSource& source) {
   while (!should_stop) {
-    turns.fetch_add(1, std::memory_order_relaxed);
+    count(&CaptureCounts::turns);
     CapturedFrame& frame = mailbox.back();
     const Status status = next_frame(source, &frame);
     if (status) {
@@ -132,7 +112,7 @@ Status CaptureThread::Shared::stream(FrameSource& source) {
       continue;
     }
     if (status.code() == ErrorCode::kCorrupt) {
-      frames_corrupt.fetch_add(1, std::memory_order_relaxed);
+      count(&CaptureCounts::frames_corrupt);
       supervisor.on_corrupt_frame(monotonic_ns());
     } else if (status.code() != ErrorCode::kTimeout) {
       return status;
@@ -150,21 +130,21 @@ Status CaptureThread::Shared::next_frame(FrameSource& source, CapturedFrame* fra
   const std::int64_t now_ns = monotonic_ns();
   read_health(source, now_ns);
   const std::int64_t left_ms = supervisor.time_left_ns(now_ns) / 1'000'000 + 1;
-  return source.next(&frame->buffer, std::min(options.frame_timeout, std::chrono::milliseconds(std::min<std::int64_t>(left_ms, 60'000))));
+  return source.next(&frame->buffer, std::chrono::milliseconds(std::min(left_ms, kFrameTimeout_ms)));
 }
 
 void CaptureThread::Shared::on_frame(FrameSource& source, CapturedFrame* frame) {
   const std::int64_t now_ns = monotonic_ns();
   frame->received_ns = now_ns;
-  if (was_away && last_frame_ns != 0) last_recovery_ns.store(now_ns - last_frame_ns, std::memory_order_relaxed);
+  if (was_away && last_frame_ns != 0) set_recovery(now_ns - last_frame_ns);
   was_away = false;
   last_frame_ns = now_ns;
   if (supervisor.on_frame(now_ns)) {
-    last_recovery_ns.store(supervisor.last_recovery_ns(), std::memory_order_relaxed);
+    set_recovery(supervisor.last_recovery_ns());
     set_report(CapturePhase::kStreaming, &source.info(), "");
   }
   if (options.wait_for_reader) wait_for_reader();
-  frames_received.fetch_add(1, std::memory_order_relaxed);
+  count(&CaptureCounts::frames_received);
   mailbox.publish();
   wake();
 }
@@ -175,17 +155,27 @@ Status CaptureThread::Shared::take_step(FrameSource& source, RecoveryStep step) 
   switch (step) {
     case RecoveryStep::kNone: break;
     case RecoveryStep::kRestartStream:
-      stalls.fetch_add(1, std::memory_order_relaxed);
-      stream_restarts.fetch_add(1, std::memory_order_relaxed);
+      count(&CaptureCounts::stalls);
+      count(&CaptureCounts::stream_restarts);
       set_report(CapturePhase::kStalled, nullptr, overdue_text(silence_ns, "restarting the stream"));
       return source.restart();
     case RecoveryStep::kReopen: set_report(CapturePhase::kStalled, nullptr, overdue_text(silence_ns, "opening the camera again")); break;
     case RecoveryStep::kResetDevice:
-      device_resets.fetch_add(1, std::memory_order_relaxed);
+      count(&CaptureCounts::device_resets);
       set_report(CapturePhase::kStalled, nullptr, overdue_text(silence_ns, "resetting the camera"));
       return source.reset_device();
   }
   return Status::ok();
+}
+
+void CaptureThread::Shared::count(std::uint64_t CaptureCounts::*counter) {
+  const std::lock_guard lock(mutex);
+  ++(counts.*counter);
+}
+
+void CaptureThread::Shared::set_recovery(std::int64_t duration_ns) {
+  const std::lock_guard lock(mutex);
+  counts.last_recovery_ns = duration_ns;
 }
 
 void CaptureThread::Shared::read_health(FrameSource& source, std::int64_t now_ns) {
@@ -193,13 +183,13 @@ void CaptureThread::Shared::read_health(FrameSource& source, std::int64_t now_ns
   health_read_ns = now_ns;
   const FrameSourceHealth current = source.health();
   const std::lock_guard lock(mutex);
-  health = current;
+  counts.source = current;
 }
 
 // Polls: only recordings wait, and a millisecond is little against the localization of a frame.
 void CaptureThread::Shared::wait_for_reader() {
   while (mailbox.has_unread() && !should_stop) {
-    turns.fetch_add(1, std::memory_order_relaxed);
+    count(&CaptureCounts::turns);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
 }

@@ -24,9 +24,8 @@ namespace camloc {
 
 struct CaptureOptions {
   std::string url;
-  bool wait_for_reader = false;                  ///< hold a frame back until the last one was taken, instead of dropping
-  std::chrono::milliseconds retry{1000};         ///< pause before the source is opened again
-  std::chrono::milliseconds frame_timeout{100};  ///< given to FrameSource::next() at most; bounds the time to stop
+  bool wait_for_reader = false;           ///< hold a frame back until the last one was taken, instead of dropping
+  std::chrono::milliseconds retry{1000};  ///< pause before the source is opened again
   SupervisorOptions supervisor;
 };
 
@@ -59,6 +58,7 @@ struct CaptureCounts {
   std::uint64_t device_reopens = 0;  ///< opened anew after it had been open
   std::uint64_t device_resets = 0;
   std::int64_t last_recovery_ns = 0;  ///< of the last stall or absence: from the last frame before it to the first after
+  FrameSourceHealth source;           ///< as of a fraction of a second ago
 };
 
 class CaptureThread {
@@ -79,8 +79,6 @@ class CaptureThread {
 
   /// Cheap enough to ask for every frame.
   [[nodiscard]] CaptureCounts counts() const;
-  /// Of the source, as of a fraction of a second ago.
-  [[nodiscard]] FrameSourceHealth health() const;
 
  private:
   /// Owned by both threads, so that an abandoned one never touches freed memory.
@@ -91,9 +89,6 @@ class CaptureThread {
     FrameMailbox mailbox;
     std::atomic<bool> should_stop{false};
     std::atomic<std::uint64_t> report_number{0};
-    std::atomic<std::uint64_t> turns{0}, frames_received{0}, frames_corrupt{0};
-    std::atomic<std::uint64_t> stalls{0}, stream_restarts{0}, device_reopens{0}, device_resets{0};
-    std::atomic<std::int64_t> last_recovery_ns{0};
 
     // The thread's own.
     CameraSupervisor supervisor{SupervisorOptions{}};
@@ -104,7 +99,7 @@ class CaptureThread {
     std::mutex mutex;  // the rest
     std::condition_variable changed;
     CaptureReport report;
-    FrameSourceHealth health;
+    CaptureCounts counts;
     bool is_finished = false;
 
     void run();
@@ -112,6 +107,8 @@ class CaptureThread {
     [[nodiscard]] Status next_frame(FrameSource& source, CapturedFrame* frame);
     void on_frame(FrameSource& source, CapturedFrame* frame);
     [[nodiscard]] Status take_step(FrameSource& source, RecoveryStep step);
+    void count(std::uint64_t CaptureCounts::*counter);
+    void set_recovery(std::int64_t duration_ns);
     void read_health(FrameSource& source, std::int64_t now_ns);
     void wait_for_reader();
     void set_report(CapturePhase phase, const FrameSourceInfo* info, const std::string& problem);

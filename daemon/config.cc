@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// The table of settings, and what follows from it.
 #include "daemon/config.h"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
+
+#include "core/io/text.h"
 
 namespace camloc {
 namespace {
@@ -63,22 +63,13 @@ const auto& table() {
   return kSettings;
 }
 
-bool is_choice(std::string_view choices, std::string_view value) {
-  while (!choices.empty()) {
-    const std::size_t end = std::min(choices.find('|'), choices.size());
-    if (choices.substr(0, end) == value) return true;
-    choices.remove_prefix(std::min(end + 1, choices.size()));
-  }
-  return false;
-}
-
 const char* type_name(const SettingField& field) {
   constexpr std::array kNames = {"true or false", "a whole number", "a text"};
   return kNames[field.index()];
 }
 
 /// A piece of what the user wrote, for an error message.
-std::string in_quotes(std::string_view text) { return std::string(1, '\'').append(text.substr(0, 60)).append(1, '\''); }
+std::string excerpt(std::string_view text) { return std::string(1, '\'').append(text.substr(0, 60)).append(1, '\''); }
 
 Status invalid(const Setting& setting, const std::string& why) { return {ErrorCode::kInvalid, setting.name() + ": " + why}; }
 
@@ -88,8 +79,9 @@ std::string range_text(const Setting& setting) {
 }
 
 Status check_text(const Setting& setting, const std::string& text) {
-  if (setting.choices[0] != '\0' && !is_choice(setting.choices, text)) {
-    return invalid(setting, in_quotes(text) + " is not one of " + setting.choices);
+  const std::vector<std::string_view> choices = split_fields(setting.choices, "|");
+  if (!choices.empty() && std::find(choices.begin(), choices.end(), text) == choices.end()) {
+    return invalid(setting, excerpt(text) + " is not one of " + setting.choices);
   }
   const auto length = static_cast<std::int64_t>(text.size());
   if (length < setting.min || length > setting.max) {
@@ -99,19 +91,10 @@ Status check_text(const Setting& setting, const std::string& text) {
   return has_control ? invalid(setting, "holds a control character") : Status::ok();
 }
 
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + '"';
-}
-
 std::string format_value(const SettingValue& value) {
   if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
   if (const std::int64_t* number = std::get_if<std::int64_t>(&value)) return std::to_string(*number);
-  return quoted(std::get<std::string>(value));
+  return in_double_quotes(std::get<std::string>(value));
 }
 
 /// "# text" lines, then what values are allowed.
@@ -132,11 +115,11 @@ Result<SettingValue> parse_value(const Setting& setting, const std::string& text
   if (std::holds_alternative<std::string Config::*>(setting.field)) return SettingValue(text);
   if (std::holds_alternative<bool Config::*>(setting.field)) {
     if (text == "true" || text == "false") return SettingValue(text == "true");
-    return invalid(setting, in_quotes(text) + " is not true or false");
+    return invalid(setting, excerpt(text) + " is not true or false");
   }
   std::int64_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) return invalid(setting, in_quotes(text) + " is not a whole number");
+  if (error != std::errc() || end != text.data() + text.size()) return invalid(setting, excerpt(text) + " is not a whole number");
   return SettingValue(number);
 }
 
@@ -184,7 +167,7 @@ Status assign_argument(const std::string& argument, Config* config) {
   const std::size_t dot = argument.find('.');
   const std::size_t equals = argument.find('=');
   if (equals == std::string::npos || dot == std::string::npos || dot > equals) {
-    return {ErrorCode::kInvalid, in_quotes(argument) + " is not section.key=value"};
+    return {ErrorCode::kInvalid, excerpt(argument) + " is not section.key=value"};
   }
   const Setting* setting = find_setting(argument.substr(0, dot), argument.substr(dot + 1, equals - dot - 1));
   if (setting == nullptr) return {ErrorCode::kInvalid, argument.substr(0, equals) + ": unknown key; camlocd --print-config lists them"};

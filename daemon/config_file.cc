@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "daemon/config.h"
 
@@ -20,13 +21,11 @@ constexpr std::size_t kMaxFileBytes = 1 << 20;  // a mistaken path should not fi
 
 std::string at(const std::string& name, const toml::source_region& where) { return name + ":" + std::to_string(where.begin.line); }
 
-SettingValue value_of_node(const toml::node& node, bool* is_supported) {
-  *is_supported = true;
+std::optional<SettingValue> value_of_node(const toml::node& node) {
   if (const auto* flag = node.as_boolean()) return flag->get();
   if (const auto* number = node.as_integer()) return number->get();
   if (const auto* text = node.as_string()) return text->get();
-  *is_supported = false;
-  return false;
+  return std::nullopt;
 }
 
 std::string known_keys(std::string_view section) {
@@ -45,10 +44,9 @@ Status parse_section(const std::string& section, const toml::table& table, const
       return {ErrorCode::kInvalid, where + ": " + section + "." + std::string(key.str()).substr(0, 40) + ": unknown key; [" + section +
                                        "] has " + known_keys(section)};
     }
-    bool is_supported = false;
-    const SettingValue value = value_of_node(node, &is_supported);
-    if (!is_supported) return {ErrorCode::kInvalid, where + ": " + setting->name() + ": wrong type; see camlocd --print-config"};
-    if (const Status status = assign(*setting, value, config); !status) return status.with_context(where);
+    const std::optional<SettingValue> value = value_of_node(node);
+    if (!value) return {ErrorCode::kInvalid, where + ": " + setting->name() + ": wrong type; see camlocd --print-config"};
+    if (const Status status = assign(*setting, *value, config); !status) return status.with_context(where);
   }
   return Status::ok();
 }

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// Parsing of requests and writing of JSON.
 #include "daemon/control_protocol.h"
 
 #include <array>
@@ -12,33 +10,15 @@
 #include <vector>
 
 #include "core/io/text.h"
+#include "core/localize/localization.h"
 
 namespace camloc {
 namespace {
 
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (byte < 0x20 || byte >= 0x7f) {
-      // Paths may hold any bytes; as Latin-1 they are at least valid JSON.
-      std::array<char, 8> code{};
-      std::snprintf(code.data(), code.size(), "\\u%04x", byte);
-      out += code.data();
-    } else {
-      out += c;
-    }
-  }
-  return out;
-}
-
 /// Appends members to one flat JSON object.
 class JsonObject {
  public:
-  void add(const char* key, std::string_view text) { add_raw(key, '"' + escaped(text) + '"'); }
+  void add(const char* key, std::string_view text) { add_raw(key, in_double_quotes(text, true)); }
   void add(const char* key, const char* text) { add(key, std::string_view(text)); }
   void add(const char* key, bool value) { add_raw(key, value ? "true" : "false"); }
   void add(const char* key, std::int64_t value) { add_raw(key, std::to_string(value)); }
@@ -98,16 +78,16 @@ std::string control_reply(const Status& status) {
   return json.str();
 }
 
-std::string control_reply(const DaemonStatus& status) {
+std::string control_reply(const status_t& status) {
   JsonObject json;
   std::array<char, 20> map_id{};
   std::snprintf(map_id.data(), map_id.size(), "%016llx", static_cast<unsigned long long>(status.map_id));
   json.add("ok", true);
-  json.add("utime", status.written_epoch_us);
-  json.add("state", to_string(status.state));
-  json.add("state_text", std::string_view(status.state_text));
-  json.add("source", std::string_view(status.source));
-  json.add("map_path", std::string_view(status.map_path));
+  json.add("utime", status.utime);
+  json.add("state", to_string(static_cast<State>(status.state)));
+  json.add("state_text", status.state_text);
+  json.add("source", status.source);
+  json.add("map_path", status.map_path);
   json.add("map_id", map_id.data());
   json.add("uptime_us", status.uptime_us);
   json.add("frames_received", status.frames_received);
@@ -132,7 +112,7 @@ std::string control_reply(const DaemonStatus& status) {
   json.add("latency_p50_ms", status.latency_p50_ms);
   json.add("latency_max_ms", status.latency_max_ms);
   json.add("rss_bytes", status.rss_bytes);
-  json.add("is_calibration_suspect", status.is_calibration_suspect);
+  json.add("is_calibration_suspect", status.is_calibration_suspect != 0);
   json.add("focal_scale", status.focal_scale);
   return json.str();
 }

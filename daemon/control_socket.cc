@@ -95,7 +95,8 @@ void ControlSocket::handle(std::span<const pollfd> fds, std::int64_t now_ns, con
       continue;
     }
     const auto client = std::find_if(clients_.begin(), clients_.end(), [&](const Client& c) { return c.fd.get() == ready.fd; });
-    if (client != clients_.end()) serve(*client, handler);
+    if (client == clients_.end()) continue;
+    if (!client->reply.empty() || read_request(*client, handler)) write_reply(*client);
   }
   if (has_new_client) accept_clients(now_ns);
 }
@@ -118,11 +119,6 @@ void ControlSocket::accept_clients(std::int64_t now_ns) {
     client.is_overdue = false;
     client.deadline_ns = now_ns + kPatience_ns;
   }
-}
-
-void ControlSocket::serve(Client& client, const ControlHandler& handler) {
-  if (client.reply.empty() && !read_request(client, handler)) return;
-  write_reply(client);
 }
 
 // True when there is a reply to write.

@@ -38,8 +38,6 @@ class ControlSocket {
   static Result<std::unique_ptr<ControlSocket>> open(const std::string& path);
   /// Removes the socket file.
   ~ControlSocket();
-  ControlSocket(const ControlSocket&) = delete;
-  ControlSocket& operator=(const ControlSocket&) = delete;
 
   /// Fills in what to wait for; the number of entries used. `fds` must hold kMaxPollFds.
   [[nodiscard]] int prepare_poll(std::span<pollfd> fds);
@@ -61,7 +59,6 @@ class ControlSocket {
 
   ControlSocket(std::string path, UniqueFd lock, UniqueFd listener);
   void accept_clients(std::int64_t now_ns);
-  void serve(Client& client, const ControlHandler& handler);
   [[nodiscard]] bool read_request(Client& client, const ControlHandler& handler);
   void write_reply(Client& client);
   static void close_client(Client& client);

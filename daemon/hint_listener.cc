@@ -1,10 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// See hint_listener.h.
 #include "daemon/hint_listener.h"
 
-#include <limits>
 #include <utility>
 
 #include "camloc/pose_hint_t.hpp"
@@ -13,8 +10,7 @@ namespace camloc {
 
 Result<PoseHint> parse_hint_message(std::span<const std::uint8_t> bytes, std::int64_t now_epoch_ns) {
   pose_hint_t message{};
-  const bool is_short = bytes.size() <= static_cast<std::size_t>(std::numeric_limits<int>::max());
-  const int size = is_short ? static_cast<int>(bytes.size()) : 0;
+  const int size = std::in_range<int>(bytes.size()) ? static_cast<int>(bytes.size()) : 0;
   if (size == 0 || message.decode(bytes.data(), 0, size) != size) return Status(ErrorCode::kInvalid, "it is no camloc.pose_hint_t");
   constexpr std::int64_t kMaxAge_us = kMaxHintAge_ns / 1000, kMaxLead_us = 1'000'000;
   const std::int64_t now_us = now_epoch_ns / 1000;

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// Formatting and rate limit of the log.
 #include "daemon/log.h"
 
 #include <unistd.h>
@@ -10,7 +8,6 @@
 #include <array>
 #include <cstdarg>
 #include <cstdio>
-#include <cstdlib>
 
 #include "daemon/clock.h"
 
@@ -20,56 +17,18 @@ namespace {
 constexpr double kBurst = 30;
 constexpr double kLinesPerSecond = 5;
 
-const char* name_of(LogLevel level) {
-  switch (level) {
-    case LogLevel::kError: return "error";
-    case LogLevel::kWarning: return "warning";
-    case LogLevel::kInfo: return "info";
-    case LogLevel::kDebug: return "debug";
-  }
-  return "?";
-}
+/// By the number of a syslog priority.
+constexpr std::array kNames = {"emerg", "alert", "crit", "error", "warning", "notice", "info", "debug"};
 
 }  // namespace
-
-Log::Log(LogLevel level, int fd) : Log(level, fd, std::getenv("JOURNAL_STREAM") != nullptr) {}
 
 Log::Log(LogLevel level, int fd, bool use_priority_prefix)
     : level_(level), fd_(fd), use_priority_prefix_(use_priority_prefix), tokens_(kBurst), refilled_ns_(monotonic_ns()) {}
 
-void Log::error(const char* format, ...) {
-  va_list arguments;
-  va_start(arguments, format);
-  write(LogLevel::kError, format, arguments);
-  va_end(arguments);
-}
-
-void Log::warning(const char* format, ...) {
-  va_list arguments;
-  va_start(arguments, format);
-  write(LogLevel::kWarning, format, arguments);
-  va_end(arguments);
-}
-
-void Log::info(const char* format, ...) {
-  va_list arguments;
-  va_start(arguments, format);
-  write(LogLevel::kInfo, format, arguments);
-  va_end(arguments);
-}
-
-void Log::debug(const char* format, ...) {
-  va_list arguments;
-  va_start(arguments, format);
-  write(LogLevel::kDebug, format, arguments);
-  va_end(arguments);
-}
-
-void Log::write(LogLevel level, const char* format, va_list arguments) {
+void Log::write(LogLevel level, const char* format, ...) {
   if (level > level_) return;
   if (!take_token()) {
     ++num_suppressed_;
-    ++num_suppressed_total_;
     return;
   }
   std::array<char, 1024> text{};
@@ -78,7 +37,10 @@ void Log::write(LogLevel level, const char* format, va_list arguments) {
     write_line(LogLevel::kWarning, text.data());
     num_suppressed_ = 0;
   }
+  va_list arguments;
+  va_start(arguments, format);
   std::vsnprintf(text.data(), text.size(), format, arguments);
+  va_end(arguments);
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
   write_line(level, text.data());
@@ -95,8 +57,9 @@ bool Log::take_token() {
 
 void Log::write_line(LogLevel level, const char* text) {
   std::array<char, 1100> line{};
-  const int length = use_priority_prefix_ ? std::snprintf(line.data(), line.size(), "<%d>%s\n", static_cast<int>(level), text)
-                                          : std::snprintf(line.data(), line.size(), "camlocd: %s: %s\n", name_of(level), text);
+  const int length = use_priority_prefix_
+                         ? std::snprintf(line.data(), line.size(), "<%d>%s\n", static_cast<int>(level), text)
+                         : std::snprintf(line.data(), line.size(), "camlocd: %s: %s\n", kNames[static_cast<std::size_t>(level)], text);
   // Nobody to tell when stderr is gone.
   [[maybe_unused]] const ssize_t written = ::write(fd_, line.data(), static_cast<std::size_t>(std::max(length, 0)));
 }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
 #include <string>
 
 namespace camloc {
@@ -16,19 +17,12 @@ enum class LogLevel : std::uint8_t { kError = 3, kWarning = 4, kInfo = 6, kDebug
 /// Belongs to one thread. Allocates nothing: longer lines are cut at 1023 bytes, line breaks become spaces.
 class Log {
  public:
-  explicit Log(LogLevel level, int fd = 2);
-  /// `use_priority_prefix` instead of asking JOURNAL_STREAM.
-  Log(LogLevel level, int fd, bool use_priority_prefix);
+  explicit Log(LogLevel level, int fd = 2, bool use_priority_prefix = std::getenv("JOURNAL_STREAM") != nullptr);
 
   void set_level(LogLevel level) { level_ = level; }
-  [[gnu::format(printf, 2, 3)]] void error(const char* format, ...);
-  [[gnu::format(printf, 2, 3)]] void warning(const char* format, ...);
-  [[gnu::format(printf, 2, 3)]] void info(const char* format, ...);
-  [[gnu::format(printf, 2, 3)]] void debug(const char* format, ...);
-  [[nodiscard]] std::uint64_t num_suppressed() const { return num_suppressed_total_; }
+  [[gnu::format(printf, 3, 4)]] void write(LogLevel level, const char* format, ...);
 
  private:
-  void write(LogLevel level, const char* format, __builtin_va_list arguments);
   bool take_token();
   void write_line(LogLevel level, const char* text);
 
@@ -37,7 +31,7 @@ class Log {
   bool use_priority_prefix_;
   double tokens_;
   std::int64_t refilled_ns_;
-  std::uint64_t num_suppressed_ = 0, num_suppressed_total_ = 0;
+  std::uint64_t num_suppressed_ = 0;
 };
 
 /// Lets a repeated complaint (a retry every second) through once, and again when it changes.

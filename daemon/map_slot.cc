@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// Opening a map behind the one in use.
 #include "daemon/map_slot.h"
 
 #include <utility>

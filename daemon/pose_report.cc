@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// From a localization in the map to what is said of it outside.
 #include "daemon/pose_report.h"
 
 #include <algorithm>
@@ -16,21 +14,13 @@ constexpr std::int64_t kMaxAge_ns = 10'000'000'000;  // older than that is not t
 
 PoseReport make_pose_report(const Localization& localization, const PoseContext& context) {
   PoseReport report;
+  report.localization = localization;
   report.capture_epoch_ns = localization.stamp_ns + context.stamp_to_epoch_ns;
   const std::int64_t age_ns = context.now_epoch_ns - report.capture_epoch_ns;
   if (context.is_capture_clock_ours && age_ns >= 0 && age_ns < kMaxAge_ns) report.age_ns = age_ns;
-  report.sequence = localization.sequence;
   report.map_id = context.map_id;
-  report.state = localization.state;
-  report.reason = localization.reason;
-  report.num_features = localization.num_features;
-  report.num_matches = localization.evidence.num_matches;
-  report.num_inliers = localization.evidence.num_inliers;
   report.reset_counter = std::uint64_t{localization.reset_counter} + context.reset_offset;
-  report.jump_m = localization.jump_m;
-  report.stage_ns = localization.stage_ns;
   report.parent_frame = context.datum != nullptr ? "wcs" : "map";
-  report.has_pose = localization.has_pose;
   report.T_parent_camera.covariance.diagonal().setConstant(kUnknownVariance);
   if (!localization.has_pose) return report;
   report.quality = std::clamp(localization.quality, 0, 100);

@@ -1,13 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What camlocd knows about a frame and about itself, as plain values: what every output and the control socket get. Units and
-// frames are here; how a message on some wire names and packs them is its sink's affair.
+// What camlocd knows about a frame, as plain values: what every output gets. Units and frames are here; how a message on some wire
+// names and packs them is its sink's affair. What it knows about itself is the message camloc.status_t: lcmtypes/status_t.lcm.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <string>
 
 #include "core/geometry/wcs.h"
 #include "core/localize/localization.h"
@@ -16,48 +14,16 @@ namespace camloc {
 
 /// One for every frame, whatever its state.
 struct PoseReport {
+  Localization localization;          ///< as it came: in the map, with the capture clock's stamp
   std::int64_t capture_epoch_ns = 0;  ///< of the exposure, since the epoch
   std::int64_t age_ns = -1;           ///< from the exposure to now; -1 where the capture clock is not this machine's
-  std::uint64_t sequence = 0;         ///< frame counter of the source
   std::uint64_t map_id = 0;           ///< 0 without a map
   const char* parent_frame = "map";   ///< or "wcs"
-  State state = State::kLost;
-  Reason reason = Reason::kNotStarted;  ///< why it is not LOCALIZED
-  bool has_pose = false;
   /// The camera in the parent frame. Without a pose: identity, with a covariance so large (1e6 m^2, rad^2) that no filter will
   /// believe it.
   PoseWithCovariance T_parent_camera;
-  int quality = -1;  ///< 0..100, -1 without a pose
-  std::uint32_t num_features = 0, num_matches = 0, num_inliers = 0;
+  int quality = -1;                 ///< 0..100, -1 without a pose
   std::uint64_t reset_counter = 0;  ///< grows whenever the pose may have jumped
-  double jump_m = 0;                ///< size of that jump
-  std::array<std::int64_t, kNumStages> stage_ns{};
-};
-
-/// Brought up to date once a second and on every change of state. Counts are since the start of the daemon.
-struct DaemonStatus {
-  std::int64_t written_epoch_us = 0, uptime_us = 0;
-  State state = State::kNoCamera;
-  std::string state_text;  ///< one line for people
-  std::string source;      ///< URL
-  std::string map_path;
-  std::uint64_t map_id = 0;  ///< 0 without a map
-  std::int64_t frames_received = 0;
-  std::int64_t frames_dropped = 0;  ///< replaced in the mailbox by a newer one before they were looked at
-  std::int64_t frames_corrupt = 0;
-  std::int64_t frames_localized = 0;
-  std::int64_t poses_published = 0;
-  std::int64_t reset_counter = 0;
-  std::int64_t map_reloads = 0, map_reload_failures = 0;
-  const char* camera_state = "none";  ///< see to_string(CapturePhase); none without a source
-  std::int64_t camera_stalls = 0, stream_restarts = 0, device_reopens = 0, device_resets = 0;
-  double last_recovery_ms = 0;
-  std::int64_t packets_lost = 0, frames_incomplete = 0, frames_unpaired = 0;  ///< of the camera since it was last opened
-  double clock_drift_ppm = 0;
-  double frame_rate_hz = 0, latency_p50_ms = 0, latency_max_ms = 0;  ///< over the last second
-  std::int64_t rss_bytes = 0;
-  bool is_calibration_suspect = false;
-  double focal_scale = 1;  ///< true / assumed focal length
 };
 
 /// What a report says beside the localization itself.

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// Datagrams to the service manager.
 #include "daemon/sd_notify.h"
 
 #include <sys/socket.h>
@@ -9,12 +7,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
+#include <cstdarg>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
+#include "core/io/text.h"
 #include "daemon/clock.h"
 
 namespace camloc {
@@ -22,10 +21,7 @@ namespace {
 
 std::int64_t environment_number(const char* name) {
   const char* text = std::getenv(name);
-  if (text == nullptr) return 0;
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(text, text + std::strlen(text), value);
-  return error == std::errc() && *end == '\0' ? value : 0;
+  return text == nullptr ? 0 : parse_int(text).value_or(0);
 }
 
 }  // namespace
@@ -47,31 +43,16 @@ Notifier::Notifier() {
   if (pid == 0 || pid == getpid()) watchdog_ns_ = std::max<std::int64_t>(environment_number("WATCHDOG_USEC"), 0) * 1000;
 }
 
-void Notifier::ready(const char* status) {
-  std::array<char, 600> text{};
-  std::snprintf(text.data(), text.size(), "READY=1\nSTATUS=%s", status);
-  send(text.data());
-}
+void Notifier::reloading() { send("RELOADING=1\nMONOTONIC_USEC=%lld", static_cast<long long>(monotonic_ns() / 1000)); }
 
-void Notifier::reloading() {
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "RELOADING=1\nMONOTONIC_USEC=%lld", static_cast<long long>(monotonic_ns() / 1000));
-  send(text.data());
-}
-
-void Notifier::stopping() { send("STOPPING=1"); }
-
-void Notifier::status(const char* text) {
-  std::array<char, 600> line{};
-  std::snprintf(line.data(), line.size(), "STATUS=%s", text);
-  send(line.data());
-}
-
-void Notifier::watchdog() { send("WATCHDOG=1"); }
-
-void Notifier::send(const char* text) {
+void Notifier::send(const char* format, ...) {
   if (!socket_.is_open()) return;
-  ::sendto(socket_.get(), text, std::strlen(text), MSG_NOSIGNAL, reinterpret_cast<const sockaddr*>(address_.data()),
+  std::array<char, 600> text{};
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(text.data(), text.size(), format, arguments);
+  va_end(arguments);
+  ::sendto(socket_.get(), text.data(), std::strlen(text.data()), MSG_NOSIGNAL, reinterpret_cast<const sockaddr*>(address_.data()),
            static_cast<socklen_t>(address_.size()));
 }
 

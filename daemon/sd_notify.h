@@ -18,16 +18,16 @@ class Notifier {
   /// Reads NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID.
   Notifier();
 
-  void ready(const char* status);
+  void ready(const char* status) { send("READY=1\nSTATUS=%s", status); }
   void reloading();
-  void stopping();
-  void status(const char* text);
-  void watchdog();
+  void stopping() { send("STOPPING=1"); }
+  void status(const char* text) { send("STATUS=%s", text); }
+  void watchdog() { send("WATCHDOG=1"); }
   /// How often the manager wants to hear watchdog(), 0 = not at all.
   [[nodiscard]] std::int64_t watchdog_ns() const { return watchdog_ns_; }
 
  private:
-  void send(const char* text);
+  [[gnu::format(printf, 2, 3)]] void send(const char* format, ...);
 
   UniqueFd socket_;
   std::string address_;  // bytes of a sockaddr_un

@@ -82,7 +82,8 @@ Status Service::start() {
   }
   listen_for_hints();
   connect();
-  log_.info("camlocd " CAMLOC_VERSION " started, source '%s', map %s", in_.config.source_url.c_str(), in_.config.map_path.c_str());
+  log_.write(LogLevel::kInfo, "camlocd " CAMLOC_VERSION " started, source '%s', map %s", in_.config.source_url.c_str(),
+             in_.config.map_path.c_str());
   notifier_.ready(board_.get().state_text.c_str());
   return Status::ok();
 }
@@ -90,7 +91,7 @@ Status Service::start() {
 int Service::run() {
   while (!exit_code_) step(-1);
   notifier_.stopping();
-  log_.info("stopping after %llu frames", static_cast<unsigned long long>(num_processed_));
+  log_.write(LogLevel::kInfo, "stopping after %llu frames", static_cast<unsigned long long>(num_processed_));
   return *exit_code_;
 }
 
@@ -174,7 +175,7 @@ void Service::adopt_source(const CaptureReport& report) {
   is_size_checked_ = false;
   if (camera_ && format_camera_toml(*camera_) == format_camera_toml(*camera)) return;
   if (camera_ && map_.is_loaded()) {
-    log_.info("another camera: the map is opened anew with its calibration");
+    log_.write(LogLevel::kInfo, "another camera: the map is opened anew with its calibration");
     map_.drop();
   }
   camera_ = std::move(camera).value();
@@ -191,14 +192,14 @@ void Service::on_phase(const CaptureReport& report) {
     case CapturePhase::kStreaming:
       last_frame_ns_ = monotonic_ns();
       source_trouble_.clear();
-      log_.info("%s: %s", was_stalled ? "frames arrive again" : "source open", report.info.description.c_str());
+      log_.write(LogLevel::kInfo, "%s: %s", was_stalled ? "frames arrive again" : "source open", report.info.description.c_str());
       break;
     case CapturePhase::kStalled:
-      log_.warning("camera stalled: %s", report.problem.c_str());
+      log_.write(LogLevel::kWarning, "camera stalled: %s", report.problem.c_str());
       set_state(State::kNoCamera, report.problem.c_str());
       break;
     case CapturePhase::kUnavailable:
-      if (source_trouble_.is_new(report.problem)) log_.warning("no camera: %s", report.problem.c_str());
+      if (source_trouble_.is_new(report.problem)) log_.write(LogLevel::kWarning, "no camera: %s", report.problem.c_str());
       set_state(State::kNoCamera, report.problem.c_str());
       break;
     case CapturePhase::kEnded:
@@ -255,7 +256,7 @@ const Localization& Service::localize(const Frame& frame) {
       report_calibration();
       return localization;
     }
-    drop_map(Reason::kMapDamaged, "a part of the map file is gone: it was truncated while in use");
+    drop_map("a part of the map file is gone: it was truncated while in use");
   }
   no_map_.sequence = frame.sequence;
   no_map_.stamp_ns = frame.stamp_ns;
@@ -263,53 +264,51 @@ const Localization& Service::localize(const Frame& frame) {
 }
 
 void Service::report_state(const Localization& localization) {
-  std::array<char, 256> text{};
-  switch (localization.state) {
-    case State::kNoMap: {
-      const std::string& trouble = map_trouble_.last();
-      std::snprintf(text.data(), text.size(), "%s", trouble.empty() ? "no map is open" : trouble.c_str());
-      break;
-    }
-    case State::kLocalized:
-      std::snprintf(text.data(), text.size(), "%u inliers of %u matches", localization.evidence.num_inliers,
-                    localization.evidence.num_matches);
-      break;
-    default: std::snprintf(text.data(), text.size(), "%s", to_string(localization.reason)); break;
+  std::array<char, 64> inliers{};
+  const char* text = to_string(localization.reason);
+  if (localization.state == State::kNoMap) text = map_trouble_.last().empty() ? "no map is open" : map_trouble_.last().c_str();
+  if (localization.state == State::kLocalized) {
+    std::snprintf(inliers.data(), inliers.size(), "%u inliers of %u matches", localization.evidence.num_inliers,
+                  localization.evidence.num_matches);
+    text = inliers.data();
   }
-  set_state(localization.state, text.data());
+  set_state(localization.state, text);
 }
 
 void Service::report_calibration() {
   const CalibrationHealth& health = map_.localizer().calibration();
-  const bool was_suspect = board_.get().is_calibration_suspect;
-  board_.set_calibration(health);
+  const bool was_suspect = board_.get().is_calibration_suspect != 0;
+  board_.counters().is_calibration_suspect = health.is_suspect ? 1 : 0;
+  board_.counters().focal_scale = health.focal_scale;
   if (health.is_suspect == was_suspect) return;
   if (health.is_suspect) {
-    log_.warning("calibration: the images fit the map with %.3f times the focal length of the camera file", health.focal_scale);
+    log_.write(LogLevel::kWarning, "calibration: the images fit the map with %.3f times the focal length of the camera file",
+               health.focal_scale);
   } else {
-    log_.info("calibration: the focal length fits the map again");
+    log_.write(LogLevel::kInfo, "calibration: the focal length fits the map again");
   }
 }
 
 void Service::set_state(State state, const char* text) {
   const State before = board_.state();
   if (!board_.set_state(state, text)) return;
-  log_.info("%s -> %s: %s", to_string(before), to_string(state), text);
+  log_.write(LogLevel::kInfo, "%s -> %s: %s", to_string(before), to_string(state), text);
   publish_status();
 }
 
 void Service::connect() {
   if (hint_listener_) {
     const Status status = hint_listener_->connect();
-    if (!status && hint_trouble_.is_new(status.message())) log_.warning("hints are not listened for: %s", status.message().c_str());
+    if (!status && hint_trouble_.is_new(status.message()))
+      log_.write(LogLevel::kWarning, "hints are not listened for: %s", status.message().c_str());
   }
   if (sink_->is_connected()) return;
   const Status status = sink_->connect();
   if (status) {
-    log_.info("publishing on %s", in_.config.publish_lcm_url.c_str());
+    log_.write(LogLevel::kInfo, "publishing on %s", in_.config.publish_lcm_url.c_str());
     route_trouble_.clear();
   } else if (route_trouble_.is_new(status.message())) {
-    log_.warning("poses are not published: %s", status.message().c_str());
+    log_.write(LogLevel::kWarning, "poses are not published: %s", status.message().c_str());
   }
 }
 
@@ -321,9 +320,8 @@ void Service::publish_status() {
 
 // What the capture thread counts, as of now: between two messages the control socket asks, too.
 void Service::refresh_counters() {
-  DaemonStatus& counters = board_.counters();
-  if (capture_) board_.set_capture(capture_->counts(), capture_->health(), capture_->mailbox().num_dropped());
-  counters.reset_counter = std::int64_t{reset_offset_} + num_resets_;
+  if (capture_) board_.set_capture(capture_->counts(), capture_->mailbox().num_dropped());
+  board_.counters().reset_counter = std::int64_t{reset_offset_} + num_resets_;
 }
 
 // Twice as often as asked for, and only while things move; see ProgressWatch.
@@ -344,7 +342,7 @@ void Service::feed_watchdog(std::int64_t now_ns) {
 }
 
 void Service::fail(const Status& status) {
-  log_.error("%s", status.message().c_str());
+  log_.write(LogLevel::kError, "%s", status.message().c_str());
   exit_code_ = 2;
 }
 

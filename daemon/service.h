@@ -50,7 +50,7 @@ class Service {
   /// Ends the capture thread, gives the control socket back. False when the source hangs: see CaptureThread::stop().
   [[nodiscard]] bool stop();
 
-  [[nodiscard]] const DaemonStatus& status() const { return board_.get(); }
+  [[nodiscard]] const status_t& status() const { return board_.get(); }
   [[nodiscard]] std::optional<int> exit_code() const { return exit_code_; }
 
  private:
@@ -80,7 +80,7 @@ class Service {
   void retry_map();
   void check_map_file();
   void announce_map();
-  void drop_map(Reason reason, const std::string& why);
+  void drop_map(const std::string& why);
 
   // State, network, watchdog.
   void set_state(State state, const char* text);

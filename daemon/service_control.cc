@@ -17,7 +17,7 @@ std::string Service::on_control(const ControlRequest& request) {
       if (!map_.is_loaded()) return control_reply(Status(ErrorCode::kUnavailable, "no map is open, nothing to reset"));
       map_.localizer().reset();
       hint_.reset();
-      log_.info("position forgotten on request");
+      log_.write(LogLevel::kInfo, "position forgotten on request");
       return control_reply(Status::ok());
     case ControlCommand::kHint: return control_reply(take_hint(request.hint));
   }
@@ -32,7 +32,7 @@ void Service::listen_for_hints() {
   hint_listener_ = std::make_unique<HintListener>(in_.config.publish_lcm_url, channel, [this](const Result<PoseHint>& hint) {
     const Status status = hint ? take_hint(*hint) : hint.status();
     if (status) return hint_trouble_.clear();
-    if (hint_trouble_.is_new(status.message())) log_.warning("hint over LCM refused: %s", status.message().c_str());
+    if (hint_trouble_.is_new(status.message())) log_.write(LogLevel::kWarning, "hint over LCM refused: %s", status.message().c_str());
   });
 }
 
@@ -40,8 +40,8 @@ Status Service::take_hint(const PoseHint& hint) {
   if (!map_.is_loaded()) return {ErrorCode::kUnavailable, "no map is open, a hint has nothing to refer to"};
   hint_ = hint;
   hint_ns_ = monotonic_ns();
-  log_.info("hint: %g %g %g m, heading %g deg, within %g m", hint.position_m.x(), hint.position_m.y(), hint.position_m.z(),
-            hint.yaw_rad * 180 / std::numbers::pi, hint.radius_m);
+  log_.write(LogLevel::kInfo, "hint: %g %g %g m, heading %g deg, within %g m", hint.position_m.x(), hint.position_m.y(),
+             hint.position_m.z(), hint.yaw_rad * 180 / std::numbers::pi, hint.radius_m);
   return Status::ok();
 }
 
@@ -51,7 +51,7 @@ void Service::pass_hint_on() {
   if (monotonic_ns() - hint_ns_ <= kMaxHintAge_ns) {
     map_.localizer().hint(*hint_);
   } else {
-    log_.warning("hint dropped: no frame came in time");
+    log_.write(LogLevel::kWarning, "hint dropped: no frame came in time");
   }
   hint_.reset();
 }

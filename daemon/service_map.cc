@@ -13,10 +13,10 @@ Status Service::reload() {
   const Status status = apply_new_config();
   if (status) {
     ++board_.counters().map_reloads;
-    log_.info("reloaded");
+    log_.write(LogLevel::kInfo, "reloaded");
   } else {
     ++board_.counters().map_reload_failures;
-    log_.warning("reload failed, everything stays as it was: %s", status.message().c_str());
+    log_.write(LogLevel::kWarning, "reload failed, everything stays as it was: %s", status.message().c_str());
   }
   publish_status();
   notifier_.ready(board_.get().state_text.c_str());
@@ -31,7 +31,7 @@ Status Service::apply_new_config() {
     if (const Status status = map_.load(map_slot_options(*config), *camera_); !status) return status;
   }
   const std::string ignored = changes_that_need_restart(in_.config, *config);
-  if (!ignored.empty()) log_.warning("these settings need a restart: %s", ignored.c_str());
+  if (!ignored.empty()) log_.write(LogLevel::kWarning, "these settings need a restart: %s", ignored.c_str());
   for (const Setting& setting : settings()) {
     if (!setting.is_reloadable) continue;
     if (const Status status = assign(setting, value_of(setting, *config), &in_.config); !status) return status;
@@ -46,14 +46,14 @@ void Service::retry_map() {
   if (map_.is_loaded() || !camera_) return;
   const Status status = map_.load(map_slot_options(in_.config), *camera_);
   if (status) return announce_map();
-  if (map_trouble_.is_new(status.message())) log_.warning("no map: %s", status.message().c_str());
+  if (map_trouble_.is_new(status.message())) log_.write(LogLevel::kWarning, "no map: %s", status.message().c_str());
 }
 
 // A file written in place is another map, or half of one: take it when it is whole, or have none. A file renamed over
 // the old one, as maps are written, changes nothing until a reload.
 void Service::check_map_file() {
-  if (map_.is_damaged()) return drop_map(Reason::kMapDamaged, "a part of the map file is gone: it was truncated while in use");
-  if (map_.was_overwritten()) drop_map(Reason::kMapDamaged, "the map file was written to while in use");
+  if (map_.is_damaged()) return drop_map("a part of the map file is gone: it was truncated while in use");
+  if (map_.was_overwritten()) drop_map("the map file was written to while in use");
 }
 
 void Service::announce_map() {
@@ -64,13 +64,13 @@ void Service::announce_map() {
   hint_.reset();
   const MapInfo& info = map_.info();
   board_.set_map(map_.path(), info.map_id);
-  log_.info("map open: %s, id %016llx, %u landmarks, %u keyframes", map_.path().c_str(), static_cast<unsigned long long>(info.map_id),
-            info.num_landmarks, info.num_keyframes);
+  log_.write(LogLevel::kInfo, "map open: %s, id %016llx, %u landmarks, %u keyframes", map_.path().c_str(),
+             static_cast<unsigned long long>(info.map_id), info.num_landmarks, info.num_keyframes);
 }
 
-void Service::drop_map(Reason reason, const std::string& why) {
-  log_.error("map dropped: %s", why.c_str());
-  no_map_.reason = reason;
+void Service::drop_map(const std::string& why) {
+  log_.write(LogLevel::kError, "map dropped: %s", why.c_str());
+  no_map_.reason = Reason::kMapDamaged;
   map_.drop();
   board_.set_map(in_.config.map_path, 0);
 }

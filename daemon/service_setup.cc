@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// Options for the parts, and checks across settings.
 #include "daemon/service_setup.h"
 
 #include <algorithm>

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// See status_board.h.
 #include "daemon/status_board.h"
 
 #include <fcntl.h>
@@ -29,11 +27,12 @@ std::int64_t resident_bytes(int statm_fd) {
 }  // namespace
 
 StatusBoard::StatusBoard(const std::string& source, const std::string& map_path, std::int64_t now_ns)
-    : latency_(now_ns), memory_fd_(::open("/proc/self/statm", O_RDONLY | O_CLOEXEC)), started_ns_(now_ns) {
+    : status_(), latency_(now_ns), memory_fd_(::open("/proc/self/statm", O_RDONLY | O_CLOEXEC)), started_ns_(now_ns) {
   status_.source = source;
   status_.map_path = map_path;
   status_.state_text.reserve(kMaxStateText);
-  if (!source.empty()) status_.camera_state = to_string(CapturePhase::kOpening);
+  status_.camera_state = source.empty() ? "none" : to_string(CapturePhase::kOpening);
+  status_.focal_scale = 1;
 }
 
 void StatusBoard::add_frame(const Localization& localization, std::int64_t latency_ns) {
@@ -43,17 +42,17 @@ void StatusBoard::add_frame(const Localization& localization, std::int64_t laten
 
 bool StatusBoard::set_state(State state, const char* text) {
   const bool is_other = state != this->state();
-  status_.state = state;
+  status_.state = static_cast<std::int8_t>(state);
   status_.state_text.assign(text, std::min(std::strlen(text), kMaxStateText));
   return is_other;
 }
 
 void StatusBoard::set_map(const std::string& path, std::uint64_t map_id) {
   status_.map_path = path;
-  status_.map_id = map_id;
+  status_.map_id = static_cast<std::int64_t>(map_id);
 }
 
-void StatusBoard::set_capture(const CaptureCounts& counts, const FrameSourceHealth& health, std::uint64_t num_dropped) {
+void StatusBoard::set_capture(const CaptureCounts& counts, std::uint64_t num_dropped) {
   const auto number = [](std::uint64_t count) { return static_cast<std::int64_t>(count); };
   status_.frames_received = number(counts.frames_received);
   status_.frames_corrupt = number(counts.frames_corrupt);
@@ -63,15 +62,10 @@ void StatusBoard::set_capture(const CaptureCounts& counts, const FrameSourceHeal
   status_.device_reopens = number(counts.device_reopens);
   status_.device_resets = number(counts.device_resets);
   status_.last_recovery_ms = static_cast<double>(counts.last_recovery_ns) * 1e-6;
-  status_.packets_lost = number(health.packets_lost);
-  status_.frames_incomplete = number(health.frames_incomplete);
-  status_.frames_unpaired = number(health.frames_unpaired);
-  status_.clock_drift_ppm = health.clock_drift_ppm;
-}
-
-void StatusBoard::set_calibration(const CalibrationHealth& health) {
-  status_.is_calibration_suspect = health.is_suspect;
-  status_.focal_scale = health.focal_scale;
+  status_.packets_lost = number(counts.source.packets_lost);
+  status_.frames_incomplete = number(counts.source.frames_incomplete);
+  status_.frames_unpaired = number(counts.source.frames_unpaired);
+  status_.clock_drift_ppm = counts.source.clock_drift_ppm;
 }
 
 void StatusBoard::close_window(std::int64_t now_ns) {
@@ -83,7 +77,7 @@ void StatusBoard::close_window(std::int64_t now_ns) {
 }
 
 void StatusBoard::stamp(std::int64_t now_ns, std::int64_t now_epoch_ns) {
-  status_.written_epoch_us = now_epoch_ns / 1000;
+  status_.utime = now_epoch_ns / 1000;
   status_.uptime_us = (now_ns - started_ns_) / 1000;
 }
 

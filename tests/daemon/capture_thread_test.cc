@@ -257,7 +257,7 @@ TEST_F(CaptureThreadTest, StallIsReportedWithItsReason) {
   CaptureThread capture(options_, opener_of(&device), wake_.get());
   ASSERT_TRUE(wait_until([&] { return capture.report().phase == CapturePhase::kStalled; }));
   EXPECT_NE(capture.report().problem.find("no frame for "), std::string::npos) << capture.report().problem;
-  ASSERT_TRUE(wait_until([&] { return capture.health().packets_lost == 7; }));
+  ASSERT_TRUE(wait_until([&] { return capture.counts().source.packets_lost == 7; }));
 }
 
 TEST_F(CaptureThreadTest, RecordingsKeepTheirPace) {

@@ -33,7 +33,7 @@ TEST(Sinks, SchemeChooses) {
 
 // What it was told.
 std::vector<PoseReport> reports;
-std::vector<DaemonStatus> states;
+std::vector<status_t> states;
 
 class DiarySink final : public PoseSink {
  public:
@@ -46,7 +46,7 @@ class DiarySink final : public PoseSink {
     if (is_connected()) reports.push_back(report);
     return is_connected();
   }
-  bool publish(const DaemonStatus& status) override {
+  bool publish(const status_t& status) override {
     states.push_back(status);
     return true;
   }
@@ -85,8 +85,8 @@ TEST(SinksSeam, ASinkIsOneFileAndOneLine) {
   EXPECT_TRUE(service.stop());
   EXPECT_EQ(static_cast<std::int64_t>(reports.size()), service.status().poses_published);
   ASSERT_FALSE(reports.empty()) << "connected at the first tick";
-  EXPECT_EQ(reports.back().sequence, 59U);
-  EXPECT_TRUE(reports.back().has_pose);
+  EXPECT_EQ(reports.back().localization.sequence, 59U);
+  EXPECT_TRUE(reports.back().localization.has_pose);
   ASSERT_FALSE(states.empty());
   EXPECT_EQ(states.back().state_text, "recording over");
 
