@@ -71,7 +71,7 @@ std::vector<Check> examine(const DoctorOptions& options) {
   settings.socket_path = options.socket_path.value_or(settings.socket_path);
 
   DaemonAnswer daemon;
-  std::optional<FrameSize> size;
+  std::optional<ImageSize> size;
   examine_service(&checks);
   checks.push_back(check_daemon(settings.socket_path, &daemon));
   checks.push_back(check_map(settings.map_path));

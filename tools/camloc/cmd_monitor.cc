@@ -13,7 +13,7 @@
 #include <string>
 
 #include "tools/camloc/commands.h"
-#include "tools/doctor/multicast_route.h"
+#include "tools/doctor/doctor_checks.h"
 #include "tools/monitor/map_sketch.h"
 #include "tools/monitor/monitor_view.h"
 

@@ -3,12 +3,11 @@
 #include "tools/common/program.h"
 
 #include <fcntl.h>
-#include <poll.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -16,6 +15,7 @@
 #include <filesystem>
 #include <numeric>
 #include <sstream>
+#include <thread>
 
 #include "core/base/unique_fd.h"
 
@@ -38,43 +38,30 @@ bool is_executable_file(const fs::path& path) {
 
 Status system_error(const std::string& what) { return {ErrorCode::kIo, what + ": " + std::strerror(errno)}; }
 
-/// Both ends of a pipe, closed on exec; not open when the system refused.
-struct Pipe {
-  UniqueFd read_end, write_end;
-
-  Pipe() {
-    std::array<int, 2> ends{};
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0) return;
-    read_end.reset(ends[0]);
-    write_end.reset(ends[1]);
-  }
-};
-
-[[noreturn]] void become(const std::string& path, const std::vector<char*>& pointers, const Pipe& out, const Pipe& err) {
-  const int null = ::open("/dev/null", O_RDONLY);
-  ::dup2(null, STDIN_FILENO);
-  ::dup2(out.write_end.get(), STDOUT_FILENO);
-  ::dup2(err.write_end.get(), STDERR_FILENO);
+[[noreturn]] void become(const std::string& path, const std::vector<char*>& pointers, int out, int err) {
+  ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
+  ::dup2(out, STDOUT_FILENO);
+  ::dup2(err, STDERR_FILENO);
   ::execv(path.c_str(), pointers.data());
   ::_exit(127);
 }
 
-/// Reads both pipes until they are closed. False when the time is up.
-bool drain(Pipe* out, Pipe* err, ProgramOutput* output, std::chrono::steady_clock::time_point deadline) {
-  while (out->read_end.is_open() || err->read_end.is_open()) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now()).count();
-    if (left <= 0) return false;
-    std::array<pollfd, 2> fds{pollfd{out->read_end.get(), POLLIN, 0}, pollfd{err->read_end.get(), POLLIN, 0}};
-    if (::poll(fds.data(), fds.size(), static_cast<int>(left)) < 0 && errno != EINTR) return false;
-    for (std::size_t i = 0; i < fds.size(); ++i) {
-      if (fds[i].fd < 0 || fds[i].revents == 0) continue;
-      std::array<char, 4096> bytes{};
-      const ssize_t count = ::read(fds[i].fd, bytes.data(), bytes.size());
-      if (count > 0) (i == 0 ? output->out : output->err).append(bytes.data(), static_cast<std::size_t>(count));
-      if (count == 0 || (count < 0 && errno != EINTR)) (i == 0 ? out : err)->read_end.reset();
-    }
+/// False when the time is up.
+bool wait_for(pid_t child, std::chrono::milliseconds timeout, int* wait_status) {
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  while (::waitpid(child, wait_status, WNOHANG) == 0) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   return true;
+}
+
+/// All that was written to a file without a name.
+std::string text_in(int fd) {
+  std::string text(static_cast<std::size_t>(std::max<off_t>(::lseek(fd, 0, SEEK_END), 0)), '\0');
+  const ssize_t count = ::pread(fd, text.data(), text.size(), 0);
+  text.resize(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+  return text;
 }
 
 std::size_t edit_distance(const std::string& a, const std::string& b) {
@@ -118,37 +105,28 @@ Status exec_program(const std::string& path, const std::vector<std::string>& arg
 }
 
 Result<ProgramOutput> run_program(const std::string& path, const std::vector<std::string>& arguments, std::chrono::milliseconds timeout) {
-  Pipe out;
-  Pipe err;
-  if (!out.read_end.is_open() || !err.read_end.is_open()) return system_error("cannot make a pipe");
+  const UniqueFd out(::memfd_create("stdout", MFD_CLOEXEC)), err(::memfd_create("stderr", MFD_CLOEXEC));
+  if (!out.is_open() || !err.is_open()) return system_error("cannot keep what a program says");
   const auto pointers = argument_pointers(path, arguments);
   const pid_t child = ::fork();
   if (child < 0) return system_error("cannot fork");
-  if (child == 0) become(path, pointers, out, err);
-  out.write_end.reset();
-  err.write_end.reset();
+  if (child == 0) become(path, pointers, out.get(), err.get());
 
-  ProgramOutput output;
-  const bool is_done = drain(&out, &err, &output, std::chrono::steady_clock::now() + timeout);
-  if (!is_done) ::kill(child, SIGKILL);
   int wait_status = 0;
-  while (::waitpid(child, &wait_status, 0) < 0 && errno == EINTR) {}
-  if (!is_done) return {ErrorCode::kTimeout, path + " did not finish within " + std::to_string(timeout.count()) + " ms"};
-  output.exit_code = WIFEXITED(wait_status) ? WEXITSTATUS(wait_status) : 128 + WTERMSIG(wait_status);
-  return output;
+  if (!wait_for(child, timeout, &wait_status)) {
+    ::kill(child, SIGKILL);
+    while (::waitpid(child, &wait_status, 0) < 0 && errno == EINTR) {}
+    return {ErrorCode::kTimeout, path + " did not finish within " + std::to_string(timeout.count()) + " ms"};
+  }
+  const int exit_code = WIFEXITED(wait_status) ? WEXITSTATUS(wait_status) : 128 + WTERMSIG(wait_status);
+  return ProgramOutput{exit_code, text_in(out.get()), text_in(err.get())};
 }
 
 std::string closest_word(const std::string& word, const std::vector<std::string>& candidates) {
-  std::string best;
-  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
-  for (const auto& candidate : candidates) {
-    const std::size_t distance = edit_distance(word, candidate);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = candidate;
-    }
-  }
-  return best;
+  const auto is_closer = [&](const std::string& a, const std::string& b) { return edit_distance(word, a) < edit_distance(word, b); };
+  const auto best = std::min_element(candidates.begin(), candidates.end(), is_closer);
+  const std::size_t most = std::max<std::size_t>(2, word.size() / 3);
+  return best == candidates.end() || edit_distance(word, *best) > most ? "" : *best;
 }
 
 }  // namespace camloc::tools

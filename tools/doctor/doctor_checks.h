@@ -13,11 +13,13 @@
 #include <string>
 #include <vector>
 
+#include "core/io/image_file.h"
 #include "drivers/sources.h"
 #include "tools/common/control_client.h"
-#include "tools/doctor/multicast_route.h"
 
 namespace camloc::tools {
+
+inline constexpr const char* kDefaultLcmUrl = "udpm://239.255.76.67:7667?ttl=0";
 
 enum class Level { kOk, kWarning, kFailure };
 
@@ -43,12 +45,9 @@ using DaemonAnswer = std::optional<nlohmann::ordered_json>;
 // doctor_setup.cc: what was configured
 [[nodiscard]] Check check_config(const std::string& path, Settings* settings);
 [[nodiscard]] Check check_map(const std::string& path);
-struct FrameSize {
-  int width = 0, height = 0;
-};
 /// Opens the source and waits for a frame, unless a daemon has it. `size`: of the frame's image, where there was one.
-[[nodiscard]] Check check_source(const std::string& url, const DaemonAnswer& daemon, std::optional<FrameSize>* size);
-[[nodiscard]] Check check_calibration(const std::string& path, const DaemonAnswer& daemon, const std::optional<FrameSize>& size);
+[[nodiscard]] Check check_source(const std::string& url, const DaemonAnswer& daemon, std::optional<ImageSize>* size);
+[[nodiscard]] Check check_calibration(const std::string& path, const DaemonAnswer& daemon, const std::optional<ImageSize>& size);
 
 // doctor_usb.cc: what is plugged in; `scheme` is that of the source
 /// Whether a kind of camera is there; `is_wanted`: it is the source.
@@ -71,5 +70,16 @@ struct ClockState {
 [[nodiscard]] Check check_clock(const ClockState& clock);
 [[nodiscard]] Check check_cpu();
 [[nodiscard]] Check check_memory(const SystemFolders& folders);
+
+// multicast_route.cc: LCM needs a route to its multicast group, even between programs of one machine; asking first gives a better answer
+// than LCM's own failure
+struct MulticastRoute {
+  std::string group;          ///< address the URL names, empty for URLs without a network (file://, memq://)
+  std::string local_address;  ///< of the interface packets leave by; 127.* stays on this machine
+  int ttl = 0;
+};
+
+/// kInvalid: not an LCM URL; kUnavailable: no route, with the commands that add one.
+[[nodiscard]] Result<MulticastRoute> find_multicast_route(const std::string& lcm_url);
 
 }  // namespace camloc::tools

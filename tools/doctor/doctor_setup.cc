@@ -69,7 +69,7 @@ Check check_map(const std::string& path) {
           ""};
 }
 
-Check check_source(const std::string& url, const DaemonAnswer& daemon, std::optional<FrameSize>* size) {
+Check check_source(const std::string& url, const DaemonAnswer& daemon, std::optional<ImageSize>* size) {
   if (url.empty())
     return {"camera", Level::kFailure, "none configured",
             "set source.url; 'camloc camera list' shows what is plugged in, camlocd.toml(5) what else it may be"};
@@ -83,12 +83,12 @@ Check check_source(const std::string& url, const DaemonAnswer& daemon, std::opti
   FrameBuffer frame;
   const Status status = (*source)->next(&frame, std::chrono::seconds(3));
   if (!status) return {"camera", Level::kFailure, url + ": " + status.message(), "check cable, power and permission of the device"};
-  *size = FrameSize{frame.gray.width, frame.gray.height};
+  *size = ImageSize{frame.gray.width, frame.gray.height};
   return {"camera", Level::kOk,
           url + text_of(": %dx%d image, %dx%d depth", frame.gray.width, frame.gray.height, frame.depth.width, frame.depth.height), ""};
 }
 
-Check check_calibration(const std::string& path, const DaemonAnswer& daemon, const std::optional<FrameSize>& size) {
+Check check_calibration(const std::string& path, const DaemonAnswer& daemon, const std::optional<ImageSize>& size) {
   const std::string name = path.empty() ? "that of the source" : path;
   const std::string mend = "'camloc camera calibrate' makes one; set source.camera to it";
   if (!path.empty()) {

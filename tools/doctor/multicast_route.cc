@@ -1,26 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/doctor/multicast_route.h"
-
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 
 #include "core/base/unique_fd.h"
+#include "core/io/text.h"
+#include "tools/doctor/doctor_checks.h"
 
 namespace camloc::tools {
 namespace {
 
 bool parse_number(const std::string& text, int max, int* number) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value < 0 || value > max) return false;
-  *number = value;
+  const std::optional<std::int64_t> value = parse_int(text);
+  if (!value || *value < 0 || *value > max) return false;
+  *number = static_cast<int>(*value);
   return true;
 }
 
@@ -55,19 +53,16 @@ Result<MulticastRoute> find_multicast_route(const std::string& lcm_url) {
   const UniqueFd fd(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (!fd.is_open()) return {ErrorCode::kIo, std::string("cannot make a UDP socket: ") + std::strerror(errno)};
   // Connecting a datagram socket sends nothing: the kernel only looks up the route.
-  const bool is_routed = ::connect(fd.get(), reinterpret_cast<const sockaddr*>(&group), sizeof(group)) == 0;
-  const int route_error = errno;
-  sockaddr_in local{};
-  socklen_t length = sizeof(local);
-  if (is_routed && ::getsockname(fd.get(), reinterpret_cast<sockaddr*>(&local), &length) == 0) {
-    std::array<char, INET_ADDRSTRLEN> text{};
-    route.local_address = ::inet_ntop(AF_INET, &local.sin_addr, text.data(), text.size()) != nullptr ? text.data() : "";
-  }
-  if (!is_routed) {
+  if (::connect(fd.get(), reinterpret_cast<const sockaddr*>(&group), sizeof(group)) != 0) {
     return {ErrorCode::kUnavailable,
-            "no multicast route to " + route.group + " (" + std::strerror(route_error) +
+            "no multicast route to " + route.group + " (" + std::strerror(errno) +
                 "); add one with 'ip link set lo up; ip link set lo multicast on; ip route add 224.0.0.0/4 dev lo'"};
   }
+  sockaddr_in local{};
+  socklen_t length = sizeof(local);
+  std::array<char, INET_ADDRSTRLEN> text{};
+  const bool is_known = ::getsockname(fd.get(), reinterpret_cast<sockaddr*>(&local), &length) == 0;
+  if (is_known && ::inet_ntop(AF_INET, &local.sin_addr, text.data(), text.size()) != nullptr) route.local_address = text.data();
   return route;
 }
 

@@ -50,6 +50,52 @@ std::vector<std::string> warnings(const MonitorState& state) {
   return texts;
 }
 
+std::string pose_part(const MonitorState& state) {
+  const pose_t& pose = *state.pose;
+  std::string screen =
+      "state     " + state_name(pose.state) + (pose.reason_text.empty() ? "" : "  (" + printable(pose.reason_text) + ")") + "\n";
+  if (has_pose(pose)) {
+    const PoseSigma sigma = pose_sigma(pose);
+    screen += text_of("position  %+9.3f %+9.3f %+9.3f m in %s, sigma %.1f cm\n", pose.pos[0], pose.pos[1], pose.pos[2],
+                      printable(pose.parent_frame).c_str(), 100 * sigma.position_m);
+    screen += text_of("rotation  %+9.4f %+9.4f %+9.4f %+9.4f (w x y z), sigma %.2f deg\n", pose.orientation[0], pose.orientation[1],
+                      pose.orientation[2], pose.orientation[3], degrees(sigma.rotation_rad));
+  } else {
+    screen += "position  none\nrotation  none\n";
+  }
+  screen += text_of("quality   %d, %d inliers of %d matches of %d features\n", static_cast<int>(pose.quality), pose.num_inliers,
+                    pose.num_matches, pose.num_features);
+  screen += text_of("poses     %lld, %.1f %% localized, %.1f Hz, %d resets\n", state.num_poses,
+                    100.0 * static_cast<double>(state.num_localized) / static_cast<double>(std::max(1LL, state.num_poses)), state.rate_hz,
+                    pose.reset_counter);
+  return screen;
+}
+
+std::string latency_part(const MonitorState& state) {
+  std::string names = "latency ", medians = "  p50 ms", worst = "  p99 ms";
+  for (std::size_t stage = 0; stage < kStageNames.size(); ++stage) {
+    const StageLatencies::Summary summary = state.latencies.of(stage);
+    names += text_of(" %10s", kStageNames[stage]);
+    medians += text_of(" %10.2f", summary.median_ms);
+    worst += text_of(" %10.2f", summary.p99_ms);
+  }
+  return names + "\n" + medians + "\n" + worst + "\n" + "  capture to publishing " + age_text(*state.pose) + "\n";
+}
+
+std::string camera_part(const status_t& status) {
+  const auto count = [](std::int64_t value) { return static_cast<long long>(value); };
+  std::string screen = "camera    " + (status.camera_state.empty() ? "" : printable(status.camera_state) + ", ") +
+                       printable(status.source) + text_of(", %.1f Hz\n", status.frame_rate_hz);
+  screen += text_of("  frames  %lld received, %lld dropped, %lld corrupt, %lld incomplete, %lld unpaired, %lld packets lost\n",
+                    count(status.frames_received), count(status.frames_dropped), count(status.frames_corrupt),
+                    count(status.frames_incomplete), count(status.frames_unpaired), count(status.packets_lost));
+  screen += text_of("  recovery %lld stalls: %lld stream restarts, %lld opened again, %lld resets", count(status.camera_stalls),
+                    count(status.stream_restarts), count(status.device_reopens), count(status.device_resets));
+  if (status.last_recovery_ms > 0) screen += text_of("; the last took %.0f ms", status.last_recovery_ms);
+  if (status.clock_drift_ppm != 0) screen += text_of("; clock %+.1f ppm", status.clock_drift_ppm);
+  return screen + "\n";
+}
+
 }  // namespace
 
 std::string state_name(int state) {
@@ -161,56 +207,6 @@ void StageLatencies::add(const pose_t& pose) {
 StageLatencies::Summary StageLatencies::of(std::size_t stage) const {
   return {upper_median(durations_ms_[stage]), lower_quantile(durations_ms_[stage], 0.99)};
 }
-
-namespace {
-
-std::string pose_part(const MonitorState& state) {
-  const pose_t& pose = *state.pose;
-  std::string screen =
-      "state     " + state_name(pose.state) + (pose.reason_text.empty() ? "" : "  (" + printable(pose.reason_text) + ")") + "\n";
-  if (has_pose(pose)) {
-    const PoseSigma sigma = pose_sigma(pose);
-    screen += text_of("position  %+9.3f %+9.3f %+9.3f m in %s, sigma %.1f cm\n", pose.pos[0], pose.pos[1], pose.pos[2],
-                      printable(pose.parent_frame).c_str(), 100 * sigma.position_m);
-    screen += text_of("rotation  %+9.4f %+9.4f %+9.4f %+9.4f (w x y z), sigma %.2f deg\n", pose.orientation[0], pose.orientation[1],
-                      pose.orientation[2], pose.orientation[3], degrees(sigma.rotation_rad));
-  } else {
-    screen += "position  none\nrotation  none\n";
-  }
-  screen += text_of("quality   %d, %d inliers of %d matches of %d features\n", static_cast<int>(pose.quality), pose.num_inliers,
-                    pose.num_matches, pose.num_features);
-  screen += text_of("poses     %lld, %.1f %% localized, %.1f Hz, %d resets\n", state.num_poses,
-                    100.0 * static_cast<double>(state.num_localized) / static_cast<double>(std::max(1LL, state.num_poses)), state.rate_hz,
-                    pose.reset_counter);
-  return screen;
-}
-
-std::string latency_part(const MonitorState& state) {
-  std::string names = "latency ", medians = "  p50 ms", worst = "  p99 ms";
-  for (std::size_t stage = 0; stage < kStageNames.size(); ++stage) {
-    const StageLatencies::Summary summary = state.latencies.of(stage);
-    names += text_of(" %10s", kStageNames[stage]);
-    medians += text_of(" %10.2f", summary.median_ms);
-    worst += text_of(" %10.2f", summary.p99_ms);
-  }
-  return names + "\n" + medians + "\n" + worst + "\n" + "  capture to publishing " + age_text(*state.pose) + "\n";
-}
-
-std::string camera_part(const status_t& status) {
-  const auto count = [](std::int64_t value) { return static_cast<long long>(value); };
-  std::string screen = "camera    " + (status.camera_state.empty() ? "" : printable(status.camera_state) + ", ") +
-                       printable(status.source) + text_of(", %.1f Hz\n", status.frame_rate_hz);
-  screen += text_of("  frames  %lld received, %lld dropped, %lld corrupt, %lld incomplete, %lld unpaired, %lld packets lost\n",
-                    count(status.frames_received), count(status.frames_dropped), count(status.frames_corrupt),
-                    count(status.frames_incomplete), count(status.frames_unpaired), count(status.packets_lost));
-  screen += text_of("  recovery %lld stalls: %lld stream restarts, %lld opened again, %lld resets", count(status.camera_stalls),
-                    count(status.stream_restarts), count(status.device_reopens), count(status.device_resets));
-  if (status.last_recovery_ms > 0) screen += text_of("; the last took %.0f ms", status.last_recovery_ms);
-  if (status.clock_drift_ppm != 0) screen += text_of("; clock %+.1f ppm", status.clock_drift_ppm);
-  return screen + "\n";
-}
-
-}  // namespace
 
 std::string monitor_screen(const MonitorState& state) {
   std::string screen = state.pose ? pose_part(state) + latency_part(state) : "state     waiting for the first pose\n";

@@ -15,9 +15,9 @@ TEST(DoctorSetupTest, CalibrationOfAnotherImageSize) {
   const std::string path = folder.write(
       "c.toml",
       "[color]\nwidth = 64\nheight = 48\nfx = 50.0\nfy = 50.0\ncx = 32.0\ncy = 24.0\nlens = \"pinhole\"\n[depth]\nregistered = true\n");
-  expect(check_calibration(path, std::nullopt, FrameSize{64, 48}), Level::kOk, path);
+  expect(check_calibration(path, std::nullopt, ImageSize{64, 48}), Level::kOk, path);
   expect(check_calibration(path, std::nullopt, std::nullopt), Level::kOk, path);
-  expect(check_calibration(path, std::nullopt, FrameSize{640, 480}), Level::kFailure, "is for 64x48 pixels, the camera gives 640x480",
+  expect(check_calibration(path, std::nullopt, ImageSize{640, 480}), Level::kFailure, "is for 64x48 pixels, the camera gives 640x480",
          "camloc camera calibrate");
   expect(check_calibration(folder / "none.toml", std::nullopt, std::nullopt), Level::kFailure, "none.toml", "set another");
   const nlohmann::ordered_json answer{{"is_calibration_suspect", true}, {"focal_scale", 1.17}};
@@ -37,7 +37,7 @@ TEST(DoctorSetupTest, AMapThatIsNoneAndASourceThatIsNotThere) {
   const TemporaryFolder folder;
   expect(check_map(""), Level::kFailure, "none configured", "camloc map build");
   expect(check_map(folder.write("m.cmap", "no map")), Level::kFailure, "m.cmap", "copy it again");
-  std::optional<FrameSize> size;
+  std::optional<ImageSize> size;
   expect(check_source("", std::nullopt, &size), Level::kFailure, "none configured", "camlocd.toml(5)");
   expect(check_source("telepathy://", std::nullopt, &size), Level::kFailure, "telepathy", "camloc camera list");
   EXPECT_FALSE(size);

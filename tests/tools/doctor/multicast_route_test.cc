@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/doctor/multicast_route.h"
-
 #include <gtest/gtest.h>
+
+#include "tools/doctor/doctor_checks.h"
 
 namespace camloc::tools {
 namespace {
