@@ -78,13 +78,13 @@ std::string control_reply(const Status& status) {
   return json.str();
 }
 
-std::string control_reply(const status_t& status) {
+std::string control_reply(const DaemonStatus& status) {
   JsonObject json;
   std::array<char, 20> map_id{};
   std::snprintf(map_id.data(), map_id.size(), "%016llx", static_cast<unsigned long long>(status.map_id));
   json.add("ok", true);
-  json.add("utime", status.utime);
-  json.add("state", to_string(static_cast<State>(status.state)));
+  json.add("utime", status.written_epoch_us);
+  json.add("state", to_string(status.state));
   json.add("state_text", status.state_text);
   json.add("source", status.source);
   json.add("map_path", status.map_path);
@@ -112,7 +112,7 @@ std::string control_reply(const status_t& status) {
   json.add("latency_p50_ms", status.latency_p50_ms);
   json.add("latency_max_ms", status.latency_max_ms);
   json.add("rss_bytes", status.rss_bytes);
-  json.add("is_calibration_suspect", status.is_calibration_suspect != 0);
+  json.add("is_calibration_suspect", status.is_calibration_suspect);
   json.add("focal_scale", status.focal_scale);
   return json.str();
 }

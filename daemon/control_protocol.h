@@ -8,9 +8,9 @@
 #include <string>
 #include <string_view>
 
-#include "camloc/status_t.hpp"
 #include "core/base/result.h"
 #include "core/localize/pose_hint.h"
+#include "daemon/pose_report.h"
 
 namespace camloc {
 
@@ -30,6 +30,6 @@ struct ControlRequest {
 [[nodiscard]] std::string control_reply(const Status& status);
 /// {"ok":true,"state":"LOCALIZED",...}: every field under the name it has in status_t; map_id as text in hexadecimal, because
 /// JSON numbers lose the low bits of 64-bit integers.
-[[nodiscard]] std::string control_reply(const status_t& status);
+[[nodiscard]] std::string control_reply(const DaemonStatus& status);
 
 }  // namespace camloc

@@ -1,11 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// What camlocd knows about a frame, as plain values: what every output gets. Units and frames are here; how a message on some wire
-// names and packs them is its sink's affair. What it knows about itself is the message camloc.status_t: lcmtypes/status_t.lcm.
+// What camlocd knows about a frame and about itself, as plain values: what every output and the control socket get. Units and
+// frames are here; how a message on some wire names and packs them is its sink's affair.
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "core/geometry/wcs.h"
 #include "core/localize/localization.h"
@@ -24,6 +25,32 @@ struct PoseReport {
   PoseWithCovariance T_parent_camera;
   int quality = -1;                 ///< 0..100, -1 without a pose
   std::uint64_t reset_counter = 0;  ///< grows whenever the pose may have jumped
+};
+
+/// Brought up to date once a second and on every change of state. Counts are since the start of the daemon.
+struct DaemonStatus {
+  std::int64_t written_epoch_us = 0, uptime_us = 0;
+  State state = State::kNoCamera;
+  std::string state_text;  ///< one line for people
+  std::string source;      ///< URL
+  std::string map_path;
+  std::uint64_t map_id = 0;  ///< 0 without a map
+  std::int64_t frames_received = 0;
+  std::int64_t frames_dropped = 0;  ///< replaced in the mailbox by a newer one before they were looked at
+  std::int64_t frames_corrupt = 0;
+  std::int64_t frames_localized = 0;
+  std::int64_t poses_published = 0;
+  std::int64_t reset_counter = 0;
+  std::int64_t map_reloads = 0, map_reload_failures = 0;
+  const char* camera_state = "none";  ///< see to_string(CapturePhase); none without a source
+  std::int64_t camera_stalls = 0, stream_restarts = 0, device_reopens = 0, device_resets = 0;
+  double last_recovery_ms = 0;
+  std::int64_t packets_lost = 0, frames_incomplete = 0, frames_unpaired = 0;  ///< of the camera since it was last opened
+  double clock_drift_ppm = 0;
+  double frame_rate_hz = 0, latency_p50_ms = 0, latency_max_ms = 0;  ///< over the last second
+  std::int64_t rss_bytes = 0;
+  bool is_calibration_suspect = false;
+  double focal_scale = 1;  ///< true / assumed focal length
 };
 
 /// What a report says beside the localization itself.

@@ -277,8 +277,8 @@ void Service::report_state(const Localization& localization) {
 
 void Service::report_calibration() {
   const CalibrationHealth& health = map_.localizer().calibration();
-  const bool was_suspect = board_.get().is_calibration_suspect != 0;
-  board_.counters().is_calibration_suspect = health.is_suspect ? 1 : 0;
+  const bool was_suspect = board_.get().is_calibration_suspect;
+  board_.counters().is_calibration_suspect = health.is_suspect;
   board_.counters().focal_scale = health.focal_scale;
   if (health.is_suspect == was_suspect) return;
   if (health.is_suspect) {

@@ -50,7 +50,7 @@ class Service {
   /// Ends the capture thread, gives the control socket back. False when the source hangs: see CaptureThread::stop().
   [[nodiscard]] bool stop();
 
-  [[nodiscard]] const status_t& status() const { return board_.get(); }
+  [[nodiscard]] const DaemonStatus& status() const { return board_.get(); }
   [[nodiscard]] std::optional<int> exit_code() const { return exit_code_; }
 
  private:

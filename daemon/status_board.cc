@@ -27,12 +27,11 @@ std::int64_t resident_bytes(int statm_fd) {
 }  // namespace
 
 StatusBoard::StatusBoard(const std::string& source, const std::string& map_path, std::int64_t now_ns)
-    : status_(), latency_(now_ns), memory_fd_(::open("/proc/self/statm", O_RDONLY | O_CLOEXEC)), started_ns_(now_ns) {
+    : latency_(now_ns), memory_fd_(::open("/proc/self/statm", O_RDONLY | O_CLOEXEC)), started_ns_(now_ns) {
   status_.source = source;
   status_.map_path = map_path;
   status_.state_text.reserve(kMaxStateText);
-  status_.camera_state = source.empty() ? "none" : to_string(CapturePhase::kOpening);
-  status_.focal_scale = 1;
+  if (!source.empty()) status_.camera_state = to_string(CapturePhase::kOpening);
 }
 
 void StatusBoard::add_frame(const Localization& localization, std::int64_t latency_ns) {
@@ -42,14 +41,14 @@ void StatusBoard::add_frame(const Localization& localization, std::int64_t laten
 
 bool StatusBoard::set_state(State state, const char* text) {
   const bool is_other = state != this->state();
-  status_.state = static_cast<std::int8_t>(state);
+  status_.state = state;
   status_.state_text.assign(text, std::min(std::strlen(text), kMaxStateText));
   return is_other;
 }
 
 void StatusBoard::set_map(const std::string& path, std::uint64_t map_id) {
   status_.map_path = path;
-  status_.map_id = static_cast<std::int64_t>(map_id);
+  status_.map_id = map_id;
 }
 
 void StatusBoard::set_capture(const CaptureCounts& counts, std::uint64_t num_dropped) {
@@ -77,7 +76,7 @@ void StatusBoard::close_window(std::int64_t now_ns) {
 }
 
 void StatusBoard::stamp(std::int64_t now_ns, std::int64_t now_epoch_ns) {
-  status_.utime = now_epoch_ns / 1000;
+  status_.written_epoch_us = now_epoch_ns / 1000;
   status_.uptime_us = (now_ns - started_ns_) / 1000;
 }
 

@@ -9,10 +9,10 @@
 #include <cstdint>
 #include <string>
 
-#include "camloc/status_t.hpp"
 #include "core/base/unique_fd.h"
 #include "core/localize/localization.h"
 #include "daemon/capture_thread.h"
+#include "daemon/pose_report.h"
 
 namespace camloc {
 
@@ -61,13 +61,13 @@ class StatusBoard {
   StatusBoard(const std::string& source, const std::string& map_path, std::int64_t now_ns);
 
   /// For counting; state and texts only through the functions below.
-  [[nodiscard]] status_t& counters() { return status_; }
-  [[nodiscard]] const status_t& get() const { return status_; }
+  [[nodiscard]] DaemonStatus& counters() { return status_; }
+  [[nodiscard]] const DaemonStatus& get() const { return status_; }
 
   void add_frame(const Localization& localization, std::int64_t latency_ns);
   /// Texts longer than 255 bytes are cut. True when the state, not only the text, is another one.
   bool set_state(State state, const char* text);
-  [[nodiscard]] State state() const { return static_cast<State>(status_.state); }
+  [[nodiscard]] State state() const { return status_.state; }
   void set_map(const std::string& path, std::uint64_t map_id);
   void set_camera_state(const char* text) { status_.camera_state = text; }
   void set_capture(const CaptureCounts& counts, std::uint64_t num_dropped);
@@ -78,7 +78,7 @@ class StatusBoard {
   void stamp(std::int64_t now_ns, std::int64_t now_epoch_ns);
 
  private:
-  status_t status_;
+  DaemonStatus status_;
   LatencyWindow latency_;
   UniqueFd memory_fd_;  // /proc/self/statm
   std::int64_t started_ns_;

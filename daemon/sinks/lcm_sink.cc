@@ -20,8 +20,13 @@ std::int32_t clip(Integer value) {
 
 class LcmSink final : public PoseSink {
  public:
-  explicit LcmSink(const SinkOptions& options) : options_(options), pose_(), bot_core_pose_(), buffer_() {
-    pose_.reason_text.reserve(128);  // the longest kind, so that it does not grow later
+  explicit LcmSink(const SinkOptions& options) : options_(options), pose_(), bot_core_pose_(), status_(), buffer_() {
+    // Texts of the longest kind, so that none grows later.
+    constexpr std::size_t kLongestReason = 128, kLongestState = 255, kLongestPath = 1000;
+    pose_.reason_text.reserve(kLongestReason);
+    status_.state_text.reserve(kLongestState);
+    status_.source.reserve(kLongestPath);
+    status_.map_path.reserve(kLongestPath);
   }
 
   [[nodiscard]] Status connect() override {
@@ -42,7 +47,10 @@ class LcmSink final : public PoseSink {
     return true;
   }
 
-  bool publish(const status_t& status) override { return send(options_.status_channel, status); }
+  bool publish(const DaemonStatus& status) override {
+    fill_status(status, &status_);
+    return send(options_.status_channel, status_);
+  }
 
  private:
   template <typename Message>
@@ -57,6 +65,7 @@ class LcmSink final : public PoseSink {
   Lcm lcm_;
   pose_t pose_;
   bot_core::pose_t bot_core_pose_;
+  status_t status_;
   std::array<std::uint8_t, 4096> buffer_;
 };
 
@@ -93,6 +102,40 @@ void fill_bot_core(const pose_t& pose, bot_core::pose_t* message) {
   message->utime = pose.utime;
   std::copy_n(pose.pos, 3, message->pos);
   std::copy_n(pose.orientation, 4, message->orientation);
+}
+
+void fill_status(const DaemonStatus& status, status_t* message) {
+  message->utime = status.written_epoch_us;
+  message->state = static_cast<std::int8_t>(status.state);
+  message->state_text = status.state_text;
+  message->source = status.source;
+  message->map_path = status.map_path;
+  message->map_id = static_cast<std::int64_t>(status.map_id);
+  message->uptime_us = status.uptime_us;
+  message->frames_received = status.frames_received;
+  message->frames_dropped = status.frames_dropped;
+  message->frames_corrupt = status.frames_corrupt;
+  message->frames_localized = status.frames_localized;
+  message->poses_published = status.poses_published;
+  message->reset_counter = status.reset_counter;
+  message->map_reloads = status.map_reloads;
+  message->map_reload_failures = status.map_reload_failures;
+  message->camera_state = status.camera_state;
+  message->camera_stalls = status.camera_stalls;
+  message->stream_restarts = status.stream_restarts;
+  message->device_reopens = status.device_reopens;
+  message->device_resets = status.device_resets;
+  message->last_recovery_ms = status.last_recovery_ms;
+  message->packets_lost = status.packets_lost;
+  message->frames_incomplete = status.frames_incomplete;
+  message->frames_unpaired = status.frames_unpaired;
+  message->clock_drift_ppm = status.clock_drift_ppm;
+  message->frame_rate_hz = status.frame_rate_hz;
+  message->latency_p50_ms = status.latency_p50_ms;
+  message->latency_max_ms = status.latency_max_ms;
+  message->rss_bytes = status.rss_bytes;
+  message->is_calibration_suspect = status.is_calibration_suspect ? 1 : 0;
+  message->focal_scale = status.focal_scale;
 }
 
 Result<std::unique_ptr<PoseSink>> open_lcm_sink(const SinkOptions& options) {

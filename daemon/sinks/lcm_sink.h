@@ -9,6 +9,7 @@
 
 #include "bot_core/pose_t.hpp"
 #include "camloc/pose_t.hpp"
+#include "camloc/status_t.hpp"
 #include "daemon/sinks/pose_sink.h"
 
 namespace camloc {
@@ -17,6 +18,7 @@ namespace camloc {
 void fill_pose(const PoseReport& report, pose_t* message);
 /// Pose and capture time only; velocities are zero.
 void fill_bot_core(const pose_t& pose, bot_core::pose_t* message);
+void fill_status(const DaemonStatus& status, status_t* message);
 
 [[nodiscard]] Result<std::unique_ptr<PoseSink>> open_lcm_sink(const SinkOptions& options);
 

@@ -6,7 +6,6 @@
 
 #include <string>
 
-#include "camloc/status_t.hpp"
 #include "core/base/result.h"
 #include "daemon/pose_report.h"
 
@@ -30,7 +29,7 @@ class PoseSink {
 
   /// False when it could not be sent, also while not connected; the next one is tried anew.
   virtual bool publish(const PoseReport& report) = 0;
-  virtual bool publish(const status_t& status) = 0;
+  virtual bool publish(const DaemonStatus& status) = 0;
 };
 
 }  // namespace camloc

@@ -52,10 +52,10 @@ TEST(ControlProtocolTest, RepliesAreJsonWhateverTheText) {
 }
 
 TEST(ControlProtocolTest, StatusNamesEveryField) {
-  status_t status{};
-  status.state = static_cast<std::int8_t>(State::kLocalized);
+  DaemonStatus status;
+  status.state = State::kLocalized;
   status.state_text = "fine";
-  status.map_id = -1;
+  status.map_id = 0xffffffffffffffff;
   status.frames_received = std::numeric_limits<std::int64_t>::max();
   status.latency_p50_ms = 1.25;
   status.focal_scale = std::numeric_limits<double>::quiet_NaN();

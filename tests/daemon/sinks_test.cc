@@ -33,7 +33,7 @@ TEST(Sinks, SchemeChooses) {
 
 // What it was told.
 std::vector<PoseReport> reports;
-std::vector<status_t> states;
+std::vector<DaemonStatus> states;
 
 class DiarySink final : public PoseSink {
  public:
@@ -46,7 +46,7 @@ class DiarySink final : public PoseSink {
     if (is_connected()) reports.push_back(report);
     return is_connected();
   }
-  bool publish(const status_t& status) override {
+  bool publish(const DaemonStatus& status) override {
     states.push_back(status);
     return true;
   }

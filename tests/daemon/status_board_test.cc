@@ -64,15 +64,15 @@ TEST(StatusBoardTest, CountsWhatItIsTold) {
   board.set_map("b.cmap", 0x8000000000000001);
   board.close_window(2'000'000'000);
   board.stamp(3'000'000'000, 77'000);
-  const status_t& status = board.get();
+  const DaemonStatus& status = board.get();
   EXPECT_EQ(status.frames_localized, 1);
   EXPECT_DOUBLE_EQ(status.frame_rate_hz, 2);
   EXPECT_DOUBLE_EQ(status.latency_max_ms, 4);
   EXPECT_EQ(status.source, "sample://");
   EXPECT_EQ(status.map_path, "b.cmap");
-  EXPECT_EQ(static_cast<std::uint64_t>(status.map_id), 0x8000000000000001);
+  EXPECT_EQ(status.map_id, 0x8000000000000001);
   EXPECT_EQ(status.focal_scale, 1);
-  EXPECT_EQ(status.utime, 77);
+  EXPECT_EQ(status.written_epoch_us, 77);
   EXPECT_EQ(status.uptime_us, 2'000'000);
   EXPECT_GT(status.rss_bytes, 100'000);
 }

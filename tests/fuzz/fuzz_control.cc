@@ -16,7 +16,7 @@ constexpr std::int64_t kNow_ns = 1'800'000'000'000'000'000;  // of corpus/contro
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view line(reinterpret_cast<const char*>(data), size);
   const camloc::Result<camloc::ControlRequest> command = camloc::parse_control_request(line);
-  camloc::status_t status{};
+  camloc::DaemonStatus status;
   status.state_text = line;
   for (const std::string& reply : {camloc::control_reply(command.status()), camloc::control_reply(status)}) {
     const bool is_printable = std::all_of(reply.begin(), reply.end(), [](char c) { return c >= 0x20 && c < 0x7f; });
