@@ -15,6 +15,7 @@
 #include "core/io/camera_file.h"
 #include "core/io/file_bytes.h"
 #include "core/io/sequence.h"
+#include "tools/camloc-sim/building.h"
 
 namespace camloc::sim {
 namespace {
@@ -35,7 +36,7 @@ class Dataset : public ::testing::Test {
     options.kind = SceneKind::kSmall;
     options.recording.rate_hz = 10;
     options.recording.duration_scale = 0.02;
-    options.lidar.step_m = 0.1;
+    options.lidar_step_m = 0.1;
     return options;
   }
   static std::string read(const fs::path& path) {
@@ -102,7 +103,7 @@ TEST_F(Dataset, RefusesAFolderWithSomethingInIt) {
   EXPECT_EQ(refused.status().code(), ErrorCode::kInvalid);
   EXPECT_NE(refused.status().message().find("--force"), std::string::npos);
   options.may_overwrite = true;
-  options.has_mapping = options.has_day2 = false;
+  options.only = "lidar";
   EXPECT_TRUE(write_dataset(folder_ / "set", options, {}).is_ok());
   EXPECT_EQ(read(folder_ / "set/notes.txt"), "mine");
 }
@@ -118,7 +119,7 @@ TEST_F(Dataset, AFailingFrameEndsTheRecording) {
   fs::create_directories(folder_ / "walk");
   ASSERT_TRUE(replace_file(folder_ / "walk/rgb", "in the way").is_ok());
   const World world = make_world({SceneKind::kSmall, 1, 1});
-  const Result<int> result = record(world, simulated_camera(), tiny().recording, folder_ / "walk", {});
+  const Result<int> result = record(world, tiny().recording, folder_ / "walk", {});
   ASSERT_FALSE(result.is_ok());
   EXPECT_EQ(result.status().code(), ErrorCode::kIo);
 }
@@ -126,7 +127,7 @@ TEST_F(Dataset, AFailingFrameEndsTheRecording) {
 TEST_F(Dataset, LidarPointsLieOnStaticSurfaces) {
   const Scene scene = build_scene(floor_plan(SceneKind::kSmall, 1), {SceneKind::kSmall, 1, 1});
   const std::string path = folder_ / "cloud.ply";
-  const Result<std::uint64_t> count = write_lidar_ply(path, scene, {.step_m = 0.2, .noise_m = 0.002, .seed = 1});
+  const Result<std::uint64_t> count = write_lidar_ply(path, scene, 0.2, 1);
   ASSERT_TRUE(count.is_ok());
   const std::string bytes = read(path);
   const std::string end = "end_header\n";

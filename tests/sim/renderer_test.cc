@@ -9,7 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/camloc-sim/frame_maker.h"
+#include "tools/camloc-sim/sensors.h"
+#include "tools/camloc-sim/walk.h"
 
 namespace camloc::sim {
 namespace {

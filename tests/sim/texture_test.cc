@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "tools/camloc-sim/pattern.h"
+#include "tools/camloc-sim/noise.h"
 
 namespace camloc::sim {
 namespace {
@@ -21,7 +21,7 @@ Spread spread_of(const Skin& skin, float foot_m) {
   for (int j = 0; j < kCount; ++j) {
     for (int i = 0; i < kCount; ++i) {
       const double tone =
-          texture_tone(skin, 0.8F * static_cast<float>(i) / kCount, 0.8F * static_cast<float>(j) / kCount, 0.8F, 0.8F, foot_m);
+          texture_tone(skin, {0.8F * static_cast<float>(i) / kCount, 0.8F * static_cast<float>(j) / kCount, 0.8F, 0.8F, foot_m});
       sum += tone;
       squares += tone * tone;
     }
@@ -48,8 +48,8 @@ TEST(Texture, PostersHaveContrastAndBlankWallsHaveNone) {
 TEST(Texture, AnotherSeedIsAnotherPoster) {
   int num_different = 0;
   for (float u = 0.01F; u < 0.6F; u += 0.02F) {
-    num_different += std::fabs(texture_tone({Material::kPoster, 1, 0.5F}, u, 0.4F, 0.6F, 0.9F, 0.002F) -
-                               texture_tone({Material::kPoster, 2, 0.5F}, u, 0.4F, 0.6F, 0.9F, 0.002F)) > 0.05F;
+    num_different += std::fabs(texture_tone({Material::kPoster, 1, 0.5F}, {u, 0.4F, 0.6F, 0.9F, 0.002F}) -
+                               texture_tone({Material::kPoster, 2, 0.5F}, {u, 0.4F, 0.6F, 0.9F, 0.002F})) > 0.05F;
   }
   EXPECT_GT(num_different, 15);
 }

@@ -11,7 +11,8 @@
 #include <map>
 #include <tuple>
 
-#include "tools/camloc-sim/frame_maker.h"
+#include "tools/camloc-sim/building.h"
+#include "tools/camloc-sim/sensors.h"
 
 namespace camloc::sim {
 namespace {
@@ -142,7 +143,7 @@ TEST(People, ComeBetweenTheCameraAndTheBuildingOnOtherDaysOnly) {
   EXPECT_TRUE(mapping.passers.empty());
   ASSERT_GE(other.passers.size(), 2U);
   const Passer& oncoming = other.passers.front();
-  const std::vector<Surface> people = people_at(other.plan, other.scene, other.passers, oncoming.meet_time_s - 2.0);
+  const std::vector<Surface> people = people_at(other, oncoming.meet_time_s - 2.0);
   Renderer renderer(other.scene, simulated_camera().color);
   const Rendering& rendering = renderer.render(other.trajectory.pose(oncoming.meet_time_s - 2.0), people);
   const auto num_static = static_cast<std::int32_t>(other.scene.surfaces.size());

@@ -2,11 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/camloc-sim/building.h"
 
-#include <algorithm>
-
-#include "tools/camloc-sim/corridor.h"
 #include "tools/camloc-sim/noise.h"
-#include "tools/camloc-sim/office.h"
 
 namespace camloc::sim {
 namespace {

@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc-sim/corridor.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "tools/camloc-sim/furniture.h"
+#include "tools/camloc-sim/building.h"
 #include "tools/camloc-sim/noise.h"
 
 namespace camloc::sim {
@@ -139,13 +137,12 @@ void add_shell(Scene* scene, const FloorPlan& plan, int side_index) {
       scene->add_ceiling(side.place, stretch.from_s, 0, to, kCorridorWidth, kCorridorHeight,
                          {Material::kCeiling, hash32(stretch.look, 102), 0.82F}, kCorridorRoom);
     }
-    add_wall(scene, side.place, stretch.to_s, stretch.from_s, 0.0, kCorridorHeight, doorways_of(plan, side_index, true), wall_skin(stretch),
-             kCorridorRoom);
+    add_wall(scene, side.place, stretch.to_s, stretch.from_s, 0.0, doorways_of(plan, side_index, true), wall_skin(stretch), kCorridorRoom);
     const double inner_from = std::max(stretch.from_s, is_first_open ? 0.0 : kCorridorWidth);
     const double inner_to = std::min(stretch.to_s, is_last_open ? side.length : side.length - kCorridorWidth);
     if (inner_to > inner_from) {
-      add_wall(scene, side.place, inner_from, inner_to, kCorridorWidth, kCorridorHeight, doorways_of(plan, side_index, false),
-               wall_skin(stretch), kCorridorRoom);
+      add_wall(scene, side.place, inner_from, inner_to, kCorridorWidth, doorways_of(plan, side_index, false), wall_skin(stretch),
+               kCorridorRoom);
     }
   }
   const Skin end{Material::kPaint, 300, 0.75F};
@@ -158,16 +155,16 @@ void add_shell(Scene* scene, const FloorPlan& plan, int side_index) {
 
 }  // namespace
 
-void add_wall(Scene* scene, const Placement& place, double x0, double x1, double y, double height, const std::vector<Doorway>& doorways,
-              const Skin& skin, int room) {
+void add_wall(Scene* scene, const Placement& place, double x0, double x1, double y, const std::vector<Doorway>& doorways, const Skin& skin,
+              int room) {
   const double direction = x1 > x0 ? 1.0 : -1.0, length = std::fabs(x1 - x0);
   const auto piece = [&](double from, double to, double z0) {  // along the wall, from its left end
     if (to - from < 1e-6) return;
-    Surface& s = scene->add_upright(place, x0 + direction * from, y, x0 + direction * to, y, z0, height, skin, room);
+    Surface& s = scene->add_upright(place, x0 + direction * from, y, x0 + direction * to, y, z0, kCorridorHeight, skin, room);
     s.texture_u = static_cast<float>(from);
     s.texture_v = static_cast<float>(z0);
     s.texture_width = static_cast<float>(length);
-    s.texture_height = static_cast<float>(height);
+    s.texture_height = static_cast<float>(kCorridorHeight);
   };
   std::vector<Doorway> cuts;
   for (const Doorway& d : doorways) {

@@ -14,14 +14,16 @@
 #include "tools/camloc-sim/dataset.h"
 #include "tools/common/command_line.h"
 #include "tools/common/terminal_observer.h"
+#include "tools/common/text_format.h"
 
 namespace {
 
 using camloc::sim::SceneKind;
 
-void add_options(CLI::App* app, std::string* out, camloc::sim::DatasetOptions* options, std::string* only) {
+void add_options(CLI::App* app, std::string* out, camloc::sim::DatasetOptions* options) {
   app->add_option("--out", *out, "Folder to write to; created, must be empty unless --force")->required();
-  app->add_option("--scene", options->kind, "building: corridor loop (seed 1: 57 x 40 m) with nine offices; small: a corner and two offices")
+  app->add_option("--scene", options->kind,
+                  "building: corridor loop (seed 1: 57 x 40 m) with nine offices; small: a corner and two offices")
       ->transform(
           CLI::CheckedTransformer(std::map<std::string, SceneKind>{{"building", SceneKind::kBuilding}, {"small", SceneKind::kSmall}}))
       ->default_str("building");
@@ -35,11 +37,11 @@ void add_options(CLI::App* app, std::string* out, camloc::sim::DatasetOptions* o
   app->add_option("--jpeg-quality", options->recording.jpeg_quality, "Colour images; 0 writes PNG")
       ->check(CLI::Range(0, 100))
       ->capture_default_str();
-  app->add_option("--lidar-step", options->lidar.step_m, "Distance between LiDAR points, metres")
+  app->add_option("--lidar-step", options->lidar_step_m, "Distance between LiDAR points, metres")
       ->check(CLI::Range(0.005, 1.0))
       ->capture_default_str();
-  app->add_option("--only", *only, "Write only this part")->check(CLI::IsMember({"mapping", "day2", "lidar"}));
-  app->add_flag("--perfect", options->recording.frames.is_perfect, "No noise, blur or missing depth");
+  app->add_option("--only", options->only, "Write only this part")->check(CLI::IsMember({"mapping", "day2", "lidar"}));
+  app->add_flag("--perfect", options->recording.is_perfect, "No noise, blur or missing depth");
   app->add_flag("--force", options->may_overwrite, "Replace a data set in a folder that is not empty");
 }
 
@@ -51,19 +53,14 @@ int main(int argc, char** argv) {
       "README.txt.\n"
       "Example: camloc sim --scene small --out /tmp/small",
       "camloc-sim");
-  std::string out, only;
+  std::string out;
   camloc::sim::DatasetOptions options;
   options.recording.rate_hz = 0;
   options.recording.num_jobs = static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 256U));
-  add_options(&app, &out, &options, &only);
+  add_options(&app, &out, &options);
   bool is_over = false;
   if (const int usage = camloc::tools::parse_command_line(app, argc, argv, &is_over); is_over) return usage;
   if (options.recording.rate_hz == 0) options.recording.rate_hz = options.kind == SceneKind::kSmall ? 10 : 30;
-  if (!only.empty()) {
-    options.has_mapping = only == "mapping";
-    options.has_day2 = only == "day2";
-    options.has_lidar = only == "lidar";
-  }
   camloc::Result<camloc::sim::DatasetSummary> summary = [&] {
     std::string shown_part;
     std::optional<camloc::tools::ProgressLine> line;
@@ -72,11 +69,8 @@ int main(int argc, char** argv) {
       line->show(static_cast<std::uint64_t>(done));
     });
   }();
-  if (!summary) {
-    camloc::tools::print_error("camloc-sim", summary.status().message());
-    return summary.status().code() == camloc::ErrorCode::kInvalid ? 2 : 1;
-  }
+  if (!summary) return camloc::tools::report("camloc-sim", summary.status());
   std::printf("%s: mapping %d frames, day2 %d frames, %llu LiDAR points\n", out.c_str(), summary->num_mapping_frames,
-              summary->num_day2_frames, static_cast<unsigned long long>(summary->num_lidar_points));
+              summary->num_day2_frames, camloc::tools::llu(summary->num_lidar_points));
   return 0;
 }

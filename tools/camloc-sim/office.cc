@@ -1,11 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc-sim/office.h"
-
 #include <numbers>
 
-#include "tools/camloc-sim/corridor.h"
-#include "tools/camloc-sim/furniture.h"
+#include "tools/camloc-sim/building.h"
 #include "tools/camloc-sim/noise.h"
 
 namespace camloc::sim {
@@ -29,7 +26,7 @@ void add_shell(Scene* scene, const Placement& place, const Office& office, std::
   const Skin floor{Material::kCarpet, hash32(seed, 3), range(hash32(seed, 4), 0.3F, 0.5F)};
   scene->add_floor(place, 0, 0, w, d, 0, floor, office.room);
   scene->add_ceiling(place, 0, 0, w, d, h, {Material::kCeiling, hash32(seed, 5), 0.83F}, office.room);
-  add_wall(scene, place, w, 0, 0, h, {{0.9, 1.85}}, wall, office.room);
+  add_wall(scene, place, w, 0, 0, {{0.9, 1.85}}, wall, office.room);
   scene->add_upright(place, 0, 0, 0, d, 0, h, wall, office.room);
   scene->add_upright(place, 0, d, w, d, 0, h, {Material::kPaint, hash32(seed, 6), 0.78F}, office.room);
   scene->add_upright(place, w, d, w, 0, 0, h, wall, office.room);

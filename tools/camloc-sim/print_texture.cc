@@ -1,25 +1,21 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc-sim/print_texture.h"
-
-#include "tools/camloc-sim/pattern.h"
+//
+// Printed and man-made detail: posters, signs, sheets, book spines, keyboards, screens, boards, cardboard boxes.
+#include "tools/camloc-sim/noise.h"
+#include "tools/camloc-sim/texture.h"
 
 namespace camloc::sim {
 namespace {
 
-/// A face in its own coordinates.
-struct Sheet {
-  float u, v, width, height, foot;
-};
-
-float rotated_rectangle(const Sheet& s, float cu, float cv, float half_u, float half_v, float angle_rad) {
+float rotated_rectangle(const Point& s, float cu, float cv, float half_u, float half_v, float angle_rad) {
   const float c = std::cos(angle_rad), n = std::sin(angle_rad);
   const float x = c * (s.u - cu) + n * (s.v - cv), y = -n * (s.u - cu) + c * (s.v - cv);
   return covered_rectangle(x, y, -half_u, -half_v, half_u, half_v, s.foot);
 }
 
 /// Lines of text in the rectangle, ragged on the right.
-float text_block(const Sheet& s, float u0, float v0, float u1, float v1, float line_height, std::uint32_t seed) {
+float text_block(const Point& s, float u0, float v0, float u1, float v1, float line_height, std::uint32_t seed) {
   if (s.u < u0 || s.u > u1 || s.v < v0 || s.v > v1) return 0.0F;
   const int line = floor_int((v1 - s.v) / line_height);
   const float end = u0 + (u1 - u0) * range(hash_cell(line, 3, seed), 0.55F, 1.0F);
@@ -28,7 +24,7 @@ float text_block(const Sheet& s, float u0, float v0, float u1, float v1, float l
 }
 
 /// Overlapping discs and bars on a mottled ground.
-float picture(const Sheet& s, std::uint32_t seed) {
+float picture(const Point& s, std::uint32_t seed) {
   float tone = range(hash32(seed, 1), 0.25F, 0.8F) + 0.22F * octaves(s.u, s.v, 0.35F * s.width, 6, 0.65F, seed + 2, s.foot);
   const int num_shapes = 4 + static_cast<int>(hash32(seed, 3) % 5U);
   const float size = std::min(s.width, s.height);
@@ -44,7 +40,7 @@ float picture(const Sheet& s, std::uint32_t seed) {
   return tone;
 }
 
-float bar_chart(const Sheet& s, std::uint32_t seed) {
+float bar_chart(const Point& s, std::uint32_t seed) {
   const float cell = s.width / 9.0F;
   const int i = floor_int(s.u / cell);
   const float height = s.height * range(hash_cell(i, 0, seed), 0.15F, 0.95F);
@@ -53,7 +49,7 @@ float bar_chart(const Sheet& s, std::uint32_t seed) {
 }
 
 /// Blocks of all tones, as a floor plan or a city map.
-float block_map(const Sheet& s, std::uint32_t seed) {
+float block_map(const Point& s, std::uint32_t seed) {
   const float cell = 0.07F;
   const float tone = filtered_lattice(s.u / cell, s.v / cell, s.foot / cell, 0.55F, [seed](int i, int j) {
     const std::uint32_t h = hash_cell(floor_int(static_cast<float>(i) / (1.0F + static_cast<float>(j & 1))), j, seed);
@@ -63,7 +59,7 @@ float block_map(const Sheet& s, std::uint32_t seed) {
   return mix(tone, 0.97F, streets);
 }
 
-float poster(const Sheet& s, std::uint32_t seed) {
+float poster(const Point& s, std::uint32_t seed) {
   const float rim = 0.03F * s.width;
   const float inside = covered_rectangle(s.u, s.v, rim, rim, s.width - rim, s.height - rim, s.foot);
   const bool is_dark = hash32(seed, 9) % 3U == 0U;
@@ -74,7 +70,7 @@ float poster(const Sheet& s, std::uint32_t seed) {
     tone =
         mix(1.0F - ground, ground, text_block(s, 2 * rim, header, s.width - rim, s.height - rim, 0.45F * (s.height - header), seed + 20));
   } else if (s.v > split) {
-    const Sheet area{s.u, s.v - split, s.width, header - split, s.foot};
+    const Point area{s.u, s.v - split, s.width, header - split, s.foot};
     switch (hash32(seed, 12) % 4U) {
       case 0: tone = bar_chart(area, seed + 30); break;
       case 1: tone = block_map(area, seed + 30); break;
@@ -90,14 +86,14 @@ float poster(const Sheet& s, std::uint32_t seed) {
   return mix(is_dark ? 0.9F : 0.3F, tone, inside);
 }
 
-float sign(const Sheet& s, const Skin& skin) {
+float sign(const Point& s, const Skin& skin) {
   const float rim = 0.06F * s.height;
   const float inside = covered_rectangle(s.u, s.v, rim, rim, s.width - rim, s.height - rim, s.foot);
   const float ink = text_block(s, 2 * rim, 0.0F, s.width - rim, s.height - rim, 0.48F * s.height, skin.seed);
   return mix(0.15F, mix(skin.tone, skin.tone > 0.5F ? 0.08F : 0.95F, ink), inside);
 }
 
-float paper(const Sheet& s, std::uint32_t seed) {
+float paper(const Point& s, std::uint32_t seed) {
   const float rim = 0.09F * s.width;
   const float ink = text_block(s, rim, rim, s.width - rim, s.height - rim, 0.012F, seed);
   const float title = text_block(s, rim, s.height - 2.6F * rim, s.width - rim, s.height - rim, 0.03F, seed + 1);
@@ -108,7 +104,7 @@ float paper(const Sheet& s, std::uint32_t seed) {
   return mix(body, figure > 0.0F ? picture({s.u, s.v - figure_v, s.width, 0.2F * s.height, s.foot}, seed + 4) : 0.5F, figure);
 }
 
-float books(const Sheet& s, std::uint32_t seed) {
+float books(const Point& s, std::uint32_t seed) {
   constexpr float kShelf = 0.34F, kBook = 0.042F;
   const int row = floor_int(s.v / kShelf);
   const float y = s.v - static_cast<float>(row) * kShelf;
@@ -133,7 +129,7 @@ float books(const Sheet& s, std::uint32_t seed) {
   return mix(mix(0.10F, tone, body), 0.45F, board);
 }
 
-float keyboard(const Sheet& s, std::uint32_t seed) {
+float keyboard(const Point& s, std::uint32_t seed) {
   constexpr float kKey = 0.0195F;
   const float gap = std::max(covered_lines(s.u, kKey, 0.004F, s.foot), covered_lines(s.v, kKey, 0.004F, s.foot));
   const float legend = filtered_lattice(s.u / (kKey / 4), s.v / (kKey / 4), s.foot / (kKey / 4), 0.1F, [seed](int i, int j) {
@@ -143,7 +139,7 @@ float keyboard(const Sheet& s, std::uint32_t seed) {
   return mix(mix(mix(0.22F, 0.8F, 0.7F * legend), 0.05F, gap), 0.3F, rim);
 }
 
-float screen(const Sheet& s, std::uint32_t seed) {
+float screen(const Point& s, std::uint32_t seed) {
   float tone = 0.3F + 0.1F * octaves(s.u, s.v, 0.2F, 3, 0.5F, seed, s.foot);
   for (std::uint32_t k = 0; k < 3; ++k) {
     const std::uint32_t h = hash32(seed, k + 5);
@@ -160,7 +156,7 @@ float screen(const Sheet& s, std::uint32_t seed) {
   return mix(0.05F, 0.85F * tone, inside);
 }
 
-float whiteboard(const Sheet& s, std::uint32_t seed) {
+float whiteboard(const Point& s, std::uint32_t seed) {
   const float inside = covered_rectangle(s.u, s.v, 0.03F, 0.03F, s.width - 0.03F, s.height - 0.03F, s.foot);
   const float pen = std::max(0.006F, 0.5F * s.foot);
   float ink = 0;
@@ -173,7 +169,7 @@ float whiteboard(const Sheet& s, std::uint32_t seed) {
   return mix(0.45F, mix(0.93F, 0.2F, ink), inside);
 }
 
-float pinboard(const Sheet& s, std::uint32_t seed) {
+float pinboard(const Point& s, std::uint32_t seed) {
   float tone = 0.5F + 0.12F * octaves(s.u, s.v, 0.02F, 3, 0.8F, seed, s.foot);
   constexpr float kCell = 0.24F;
   const int i = floor_int(s.u / kCell), j = floor_int(s.v / kCell);
@@ -181,7 +177,7 @@ float pinboard(const Sheet& s, std::uint32_t seed) {
   if (h % 5U != 0U) {
     const float w = range(hash32(h, 1), 0.10F, 0.2F), t = range(hash32(h, 2), 0.10F, 0.21F);
     const float u0 = (static_cast<float>(i) + 0.5F) * kCell - 0.5F * w, v0 = (static_cast<float>(j) + 0.5F) * kCell - 0.5F * t;
-    const Sheet note{s.u - u0, s.v - v0, w, t, s.foot};
+    const Point note{s.u - u0, s.v - v0, w, t, s.foot};
     const float inside = covered_rectangle(s.u, s.v, u0, v0, u0 + w, v0 + t, s.foot);
     if (inside > 0.0F) tone = mix(tone, h % 3U == 0U ? picture(note, h) : paper(note, h), inside);
     tone = mix(tone, 0.05F, covered_disc(s.u, s.v, u0 + 0.5F * w, v0 + t - 0.012F, 0.006F, s.foot));
@@ -190,7 +186,7 @@ float pinboard(const Sheet& s, std::uint32_t seed) {
   return mix(tone, 0.25F, frame);
 }
 
-float cardboard(const Sheet& s, const Skin& skin) {
+float cardboard(const Point& s, const Skin& skin) {
   float tone = skin.tone + 0.05F * octaves(s.u, s.v, 0.08F, 4, 0.6F, skin.seed, s.foot);
   tone = mix(tone, skin.tone + 0.18F, covered(s.u, 0.45F * s.width, 0.57F * s.width, s.foot));
   const float u0 = 0.1F * s.width, v0 = range(hash32(skin.seed, 1), 0.15F, 0.5F) * s.height, w = 0.3F * s.width, t = 0.25F * s.height;
@@ -204,8 +200,7 @@ float cardboard(const Sheet& s, const Skin& skin) {
 
 }  // namespace
 
-float print_tone(const Skin& skin, float u, float v, float width_m, float height_m, float foot_m) {
-  const Sheet s{u, v, width_m, height_m, foot_m};
+float print_tone(const Skin& skin, const Point& s) {
   switch (skin.material) {
     case Material::kPoster: return poster(s, skin.seed);
     case Material::kSign: return sign(s, skin);

@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc-sim/recorder.h"
-
+//
+// The frames of a walk, made side by side and written.
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <mutex>
@@ -13,6 +14,9 @@
 #include "core/io/file_bytes.h"
 #include "core/io/image_writer.h"
 #include "core/io/sequence.h"
+#include "tools/camloc-sim/dataset.h"
+#include "tools/camloc-sim/noise.h"
+#include "tools/camloc-sim/sensors.h"
 
 namespace camloc::sim {
 namespace {
@@ -23,6 +27,57 @@ std::string stamp_text(std::int64_t stamp_ns) {
                 static_cast<long long>(stamp_ns % 1000000000 / 1000));
   return text;
 }
+
+/// A sixteenth of the pixels in each direction is plenty for a mean.
+Intrinsics meter_intrinsics(const Intrinsics& full) {
+  constexpr int kReduction = 10;
+  return {full.width / kReduction, full.height / kReduction,           full.fx / kReduction,
+          full.fy / kReduction,    (full.cx + 0.5) / kReduction - 0.5, (full.cy + 0.5) / kReduction - 0.5};
+}
+
+/// One camera on one walk through one scene: the frame at any time, alone, independent of the frames before it.
+/// Not thread-safe: one per thread. The world must outlive it.
+class FrameMaker {
+ public:
+  FrameMaker(const World& world, bool is_perfect)
+      : world_(world),
+        is_perfect_(is_perfect),
+        renderer_(world.scene, simulated_camera().color),
+        meter_(world.scene, meter_intrinsics(simulated_camera().color)),
+        color_sensor_(simulated_camera().color),
+        depth_sensor_(simulated_camera().color, is_perfect) {}
+
+  /// Mean tone a light meter sees at that time.
+  [[nodiscard]] float meter(double time_s) {
+    const std::vector<Surface> people = people_at(world_, time_s);
+    const Rendering& small = meter_.render(world_.trajectory.pose(time_s), people);
+    double sum = 0;
+    for (const float radiance : small.radiance.pixels) sum += std::min(1.0F, std::sqrt(radiance));
+    return static_cast<float>(sum / static_cast<double>(small.radiance.pixels.size())) * std::sqrt(light_drift(time_s));
+  }
+  /// The frame exposed around `time_s`; `index` seeds its noise. Fills gray and depth only.
+  void make(double time_s, std::uint32_t index, Exposure exposure, FrameBuffer* frame) {
+    const std::vector<Surface> people = people_at(world_, time_s);
+    const Rendering& rendering = renderer_.render(world_.trajectory.pose(time_s), people);
+    const std::uint32_t seed = hash32(world_.options.seed, world_.options.day * 1000000U + index, 5000);
+    exposure.gain *= light_drift(time_s);
+    color_sensor_.expose(rendering, world_.trajectory.twist(time_s), exposure, seed, is_perfect_, &frame->gray);
+    depth_sensor_.measure(rendering, renderer_, seed, &frame->depth);
+  }
+
+ private:
+  [[nodiscard]] float light_drift(double time_s) const {
+    const auto seed = hash32(world_.options.seed, world_.options.day, 4000);
+    const float t = static_cast<float>(time_s);
+    return 1.0F + 0.15F * value_noise(t / 9.0F, 0.5F, seed) + 0.04F * value_noise(t / 1.5F, 0.5F, seed + 1);
+  }
+
+  const World& world_;
+  bool is_perfect_;
+  Renderer renderer_, meter_;
+  ColorSensor color_sensor_;
+  DepthSensor depth_sensor_;
+};
 
 /// Runs work(worker, index) for all indices below count on `num_jobs` threads; stops early when one returns an error.
 template <typename MakeWorker>
@@ -75,9 +130,7 @@ Status write_index(const World& world, const Timeline& times, const RecordingOpt
     const std::string stamp = stamp_text(times.stamp_ns(i));
     rgb += stamp + " rgb/" + stamp + extension + "\n";
     depth += stamp + " depth/" + stamp + ".png\n";
-    std::string line = format_tum_line(times.stamp_ns(i), world.trajectory.pose(times.time_s(i)));
-    if (line.empty() || line.back() != '\n') line += '\n';
-    truth += line;
+    truth += format_tum_line(times.stamp_ns(i), world.trajectory.pose(times.time_s(i))) + "\n";
   }
   if (Status status = replace_file(folder + "/rgb.txt", rgb); !status) return status;
   if (Status status = replace_file(folder + "/depth.txt", depth); !status) return status;
@@ -86,8 +139,7 @@ Status write_index(const World& world, const Timeline& times, const RecordingOpt
 
 }  // namespace
 
-Result<int> record(const World& world, const RgbdCamera& camera, const RecordingOptions& options, const std::string& folder,
-                   const Progress& progress) {
+Result<int> record(const World& world, const RecordingOptions& options, const std::string& folder, const Progress& progress) {
   std::error_code error;
   for (const char* part : {"/rgb", "/depth"}) {
     std::filesystem::create_directories(folder + part, error);
@@ -97,7 +149,7 @@ Result<int> record(const World& world, const RgbdCamera& camera, const Recording
   const auto count = static_cast<std::size_t>(times.num_frames);
   std::vector<float> tones(count);
   Status status = parallel_for(options.num_jobs, times.num_frames, [&] {
-    return [&, maker = FrameMaker(world, camera, options.frames)](int i) mutable {
+    return [&, maker = FrameMaker(world, options.is_perfect)](int i) mutable {
       tones[static_cast<std::size_t>(i)] = maker.meter(times.time_s(i));
       return Status::ok();
     };
@@ -106,7 +158,7 @@ Result<int> record(const World& world, const RgbdCamera& camera, const Recording
   int num_done = 0;
   std::mutex progress_mutex;
   status = parallel_for(options.num_jobs, times.num_frames, [&] {
-    return [&, maker = FrameMaker(world, camera, options.frames), frame = FrameBuffer()](int i) mutable {
+    return [&, maker = FrameMaker(world, options.is_perfect), frame = FrameBuffer()](int i) mutable {
       maker.make(times.time_s(i), static_cast<std::uint32_t>(i), exposures[static_cast<std::size_t>(i)], &frame);
       Status written = write_frame(frame, options, folder, stamp_text(times.stamp_ns(i)));
       const std::lock_guard lock(progress_mutex);

@@ -20,10 +20,8 @@ void copy(const Eigen::Vector3d& from, float (&to)[3]) {
 }  // namespace
 
 Renderer::Renderer(const Scene& scene, const Intrinsics& intrinsics) : scene_(&scene), intrinsics_(intrinsics) {
-  inverse_depth_.resize(intrinsics.width, intrinsics.height);
-  rendering_.radiance.resize(intrinsics.width, intrinsics.height);
-  rendering_.depth_m.resize(intrinsics.width, intrinsics.height);
-  rendering_.cosine.resize(intrinsics.width, intrinsics.height);
+  for (Image<float>* image : {&inverse_depth_, &rendering_.radiance, &rendering_.depth_m, &rendering_.cosine})
+    image->resize(intrinsics.width, intrinsics.height);
   rendering_.surface.resize(intrinsics.width, intrinsics.height);
 }
 
@@ -64,16 +62,15 @@ bool Renderer::make_view(const Surface& surface, View* view) const {
 void Renderer::draw(const Surface& surface, std::int32_t index) {
   View& view = views_[static_cast<std::size_t>(index)];
   if (!make_view(surface, &view)) return;
-  std::array<Eigen::Vector3d, 4> corners;
   const Eigen::Vector3d origin = R_camera_world_ * (surface.origin - camera_position_);
   const Eigen::Vector3d u = R_camera_world_ * surface.u_axis * surface.width, v = R_camera_world_ * surface.v_axis * surface.height;
-  corners = {origin, origin + u, origin + u + v, origin + v};
-  if (std::all_of(corners.begin(), corners.end(), [](const Eigen::Vector3d& p) { return p.z() < kNear; })) return;
-  // Entirely outside one side plane of the view.
+  const std::array<Eigen::Vector3d, 4> corners{origin, origin + u, origin + u + v, origin + v};
+  // Entirely behind the camera, or outside one side plane of its field of view.
   const double left = -intrinsics_.cx / intrinsics_.fx, right = (intrinsics_.width - intrinsics_.cx) / intrinsics_.fx;
   const double top = -intrinsics_.cy / intrinsics_.fy, bottom = (intrinsics_.height - intrinsics_.cy) / intrinsics_.fy;
   const auto outside = [&](auto predicate) { return std::all_of(corners.begin(), corners.end(), predicate); };
-  if (outside([&](const Eigen::Vector3d& p) { return p.x() < left * p.z(); }) ||
+  if (outside([&](const Eigen::Vector3d& p) { return p.z() < kNear; }) ||
+      outside([&](const Eigen::Vector3d& p) { return p.x() < left * p.z(); }) ||
       outside([&](const Eigen::Vector3d& p) { return p.x() > right * p.z(); }) ||
       outside([&](const Eigen::Vector3d& p) { return p.y() < top * p.z(); }) ||
       outside([&](const Eigen::Vector3d& p) { return p.y() > bottom * p.z(); })) {
@@ -139,7 +136,7 @@ float Renderer::shade(const View& view, const Hit& hit) const {
   // Pixel size on the surface: halfway between its short side and its long, foreshortened one.
   const float foot = hit.depth / static_cast<float>(intrinsics_.fx) / std::sqrt(std::max(hit.cosine, 0.02F));
   const float tone =
-      std::max(0.02F, texture_tone(s.skin, hit.u + s.texture_u, hit.v + s.texture_v, s.texture_width, s.texture_height, foot));
+      std::max(0.02F, texture_tone(s.skin, {hit.u + s.texture_u, hit.v + s.texture_v, s.texture_width, s.texture_height, foot}));
   if (is_emissive(s.skin.material)) return 0.9F * tone * tone;
   const float x = std::clamp(hit.u / static_cast<float>(s.width), 0.0F, 0.9999F) * static_cast<float>(s.light_columns - 1);
   const float y = std::clamp(hit.v / static_cast<float>(s.height), 0.0F, 0.9999F) * static_cast<float>(s.light_rows - 1);

@@ -23,17 +23,7 @@ Placement Placement::child(double x, double y, double child_angle_rad) const {
 
 Surface& Scene::add(const Eigen::Vector3d& origin, const Eigen::Vector3d& u_axis, const Eigen::Vector3d& v_axis, double width,
                     double height, const Skin& skin, int room) {
-  Surface s;
-  s.origin = origin;
-  s.u_axis = u_axis;
-  s.v_axis = v_axis;
-  s.width = width;
-  s.height = height;
-  s.skin = skin;
-  s.texture_width = static_cast<float>(width);
-  s.texture_height = static_cast<float>(height);
-  s.room = room;
-  surfaces.push_back(std::move(s));
+  surfaces.push_back({origin, u_axis, v_axis, width, height, skin, 0, 0, static_cast<float>(width), static_cast<float>(height), room});
   return surfaces.back();
 }
 

@@ -6,7 +6,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <cstdint>
 #include <vector>
 
 #include "tools/camloc-sim/texture.h"
@@ -28,7 +27,7 @@ struct Surface {
 
   // Light on the surface, filled by Scene::bake_light: nodes light_columns x light_rows, evenly spaced, borders included.
   int light_columns = 0, light_rows = 0;
-  std::vector<float> light;
+  std::vector<float> light = {};
 
   [[nodiscard]] Eigen::Vector3d normal() const { return u_axis.cross(v_axis); }
   [[nodiscard]] Eigen::Vector3d at(double u, double v) const { return origin + u * u_axis + v * v_axis; }

@@ -4,15 +4,10 @@
 // The textures of building surfaces and furniture. Printed matter is in print_texture.cc.
 #include "tools/camloc-sim/texture.h"
 
-#include "tools/camloc-sim/pattern.h"
-#include "tools/camloc-sim/print_texture.h"
+#include "tools/camloc-sim/noise.h"
 
 namespace camloc::sim {
 namespace {
-
-struct Point {
-  float u, v, foot;
-};
 
 /// Dark or bright specks, one candidate per cell of `cell_m`, present with the given probability.
 float specks(const Point& p, float cell_m, float probability, float min_radius_m, float max_radius_m, std::uint32_t seed) {
@@ -83,12 +78,12 @@ float cloth(const Skin& s, const Point& p) {
   return s.tone + 0.10F * folds + 0.16F * stripes;
 }
 
-float window(const Skin& s, const Point& p, float width, float height) {
-  const float horizon = height * range(hash32(s.seed, 1), 0.35F, 0.6F) + 0.12F * octaves(p.u, 0.0F, 0.6F, 4, 0.6F, s.seed + 2, p.foot);
+float window(const Skin& s, const Point& p) {
+  const float horizon = p.height * range(hash32(s.seed, 1), 0.35F, 0.6F) + 0.12F * octaves(p.u, 0.0F, 0.6F, 4, 0.6F, s.seed + 2, p.foot);
   const float tree = clamp01(0.5F + (horizon - p.v) / std::max(p.foot, 0.02F));
   const float sky = s.tone + 0.1F * octaves(p.u, p.v, 0.8F, 3, 0.5F, s.seed + 3, p.foot);
   const float leaves = 0.55F * s.tone + 0.2F * octaves(p.u, p.v, 0.15F, 5, 0.75F, s.seed + 4, p.foot);
-  const float frame = std::max({covered_lines(p.u, 0.5F * width, 0.06F, p.foot), covered_lines(p.v, height, 0.09F, p.foot)});
+  const float frame = std::max({covered_lines(p.u, 0.5F * p.width, 0.06F, p.foot), covered_lines(p.v, p.height, 0.09F, p.foot)});
   return mix(mix(sky, leaves, tree), 0.75F, frame);
 }
 
@@ -101,40 +96,35 @@ float brick(const Skin& s, const Point& p) {
   return mix(s.tone + body + 0.07F * octaves(p.u, p.v, 0.05F, 3, 0.7F, s.seed + 1, p.foot), s.tone + 0.22F, mortar);
 }
 
-float lamp(const Point& p, float width, float height) {
-  const float frame = 1.0F - covered_rectangle(p.u, p.v, 0.03F, 0.03F, width - 0.03F, height - 0.03F, p.foot);
+float lamp(const Point& p) {
+  const float frame = 1.0F - covered_rectangle(p.u, p.v, 0.03F, 0.03F, p.width - 0.03F, p.height - 0.03F, p.foot);
   return mix(1.5F - 0.15F * covered_lines(p.u, 0.1F, 0.012F, p.foot), 0.8F, frame);
 }
 
 }  // namespace
 
-float texture_tone(const Skin& skin, float u, float v, float width_m, float height_m, float foot_m) {
-  const Point p{u, v, foot_m};
+float texture_tone(const Skin& skin, const Point& p) {
   switch (skin.material) {
     case Material::kPaint: return paint(skin, p);
-    case Material::kBlank: return skin.tone + 0.008F * octaves(u, v, 1.5F, 2, 0.5F, skin.seed, foot_m);
+    case Material::kBlank: return skin.tone + 0.008F * octaves(p.u, p.v, 1.5F, 2, 0.5F, skin.seed, p.foot);
     case Material::kCarpet: return carpet(skin, p);
     case Material::kTiles: return tiles(skin, p);
-    case Material::kLinoleum: return skin.tone + 0.02F * octaves(u, v, 0.5F, 5, 0.7F, skin.seed, foot_m);
+    case Material::kLinoleum: return skin.tone + 0.02F * octaves(p.u, p.v, 0.5F, 5, 0.7F, skin.seed, p.foot);
     case Material::kCeiling: return ceiling(skin, p);
     case Material::kWood: return wood(skin, p);
     case Material::kRibs: return ribs(skin, p);
     case Material::kFabric: return fabric(skin, p);
     case Material::kCloth: return cloth(skin, p);
-    case Material::kLamp: return lamp(p, width_m, height_m);
-    case Material::kWindow: return window(skin, p, width_m, height_m);
+    case Material::kLamp: return lamp(p);
+    case Material::kWindow: return window(skin, p);
     case Material::kBrick: return brick(skin, p);
-    case Material::kPlain: return skin.tone + 0.02F * octaves(u, v, 0.1F, 2, 0.5F, skin.seed, foot_m);
-    default: return print_tone(skin, u, v, width_m, height_m, foot_m);
+    case Material::kPlain: return skin.tone + 0.02F * octaves(p.u, p.v, 0.1F, 2, 0.5F, skin.seed, p.foot);
+    default: return print_tone(skin, p);
   }
 }
 
 bool is_emissive(Material material) {
   return material == Material::kLamp || material == Material::kWindow || material == Material::kScreen;
-}
-
-bool is_depth_unfriendly(Material material) {
-  return material == Material::kScreen || material == Material::kWindow || material == Material::kLamp;
 }
 
 }  // namespace camloc::sim

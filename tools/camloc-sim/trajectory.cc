@@ -48,8 +48,6 @@ std::vector<Eigen::Vector2d> resample(const std::vector<Eigen::Vector2d>& path) 
   return points;
 }
 
-double wrap(double angle) { return std::remainder(angle, 2 * kPi); }
-
 struct PathPoint {
   Eigen::Vector2d position;
   double heading = 0, speed = 0;
@@ -61,7 +59,7 @@ std::vector<PathPoint> plan(const std::vector<Eigen::Vector2d>& path, const Walk
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Eigen::Vector2d step = points[i] - points[i - 1];
     const double raw = step.norm() > 1e-6 ? std::atan2(step.y(), step.x()) : heading[i - 1];
-    heading[i] = i == 1 ? raw : heading[i - 1] + wrap(raw - heading[i - 1]);
+    heading[i] = i == 1 ? raw : heading[i - 1] + std::remainder(raw - heading[i - 1], 2 * kPi);
   }
   heading[0] = heading[1];
   heading = gaussian_filter(heading, 0.20 / kSpacing);  // eyes turn before the feet do
@@ -108,28 +106,16 @@ Trajectory::Trajectory(const std::vector<Eigen::Vector2d>& path, const WalkStyle
     const double gait = std::min(1.0, speed / 0.8), phase = 2 * kPi * steps;
     const double sway = 0.012 * gait * std::sin(0.5 * phase);
     Sample s;
-    s.position = {p.x() - sway * std::sin(heading), p.y() + sway * std::cos(heading),
-                  style.height_m + 0.015 * gait * std::sin(phase) + 0.03 * wander(t, style.seed + 1, 19.0)};
-    s.yaw = heading + style.look_rad * wander(t, style.seed + 2, 8.0) + 0.008 * gait * std::sin(0.5 * phase + 0.6);
-    s.pitch = style.pitch_rad + 0.14 * wander(t, style.seed + 3, 7.0) + 0.008 * gait * std::sin(phase + 1.0);
-    s.roll = 0.03 * wander(t, style.seed + 4, 5.0) + 0.010 * gait * std::sin(0.5 * phase + 2.0);
+    s << p.x() - sway * std::sin(heading), p.y() + sway * std::cos(heading),
+        style.height_m + 0.015 * gait * std::sin(phase) + 0.03 * wander(t, style.seed + 1, 19.0),
+        heading + style.look_rad * wander(t, style.seed + 2, 8.0) + 0.008 * gait * std::sin(0.5 * phase + 0.6),
+        style.pitch_rad + 0.14 * wander(t, style.seed + 3, 7.0) + 0.008 * gait * std::sin(phase + 1.0),
+        0.03 * wander(t, style.seed + 4, 5.0) + 0.010 * gait * std::sin(0.5 * phase + 2.0);
     samples_.push_back(s);
     index += speed * kStep / std::max(1e-4, (b.position - a.position).norm());
     steps += speed * kStep / 0.65;
   }
-  smooth(0.06);
-}
-
-void Trajectory::smooth(double sigma_s) {
-  using Row = Eigen::Matrix<double, 6, 1>;
-  std::vector<Row> rows;
-  for (const Sample& s : samples_) {
-    Row row;
-    row << s.position, s.yaw, s.pitch, s.roll;
-    rows.push_back(row);
-  }
-  rows = gaussian_filter(rows, sigma_s / kStep);
-  for (std::size_t i = 0; i < rows.size(); ++i) samples_[i] = {rows[i].head<3>(), rows[i][3], rows[i][4], rows[i][5]};
+  samples_ = gaussian_filter(samples_, 0.06 / kStep);
 }
 
 double Trajectory::duration_s() const { return kStep * static_cast<double>(samples_.size() - 1); }
@@ -138,9 +124,8 @@ Rigid3 Trajectory::pose(double time_s) const {
   const double x = std::clamp(time_s / kStep, 0.0, static_cast<double>(samples_.size() - 1));
   const std::size_t i = std::min(static_cast<std::size_t>(x), samples_.size() - 2);
   const double f = x - static_cast<double>(i);
-  const Sample &a = samples_[i], &b = samples_[i + 1];
-  const auto blend = [f](const auto& from, const auto& to) { return (from + f * (to - from)); };
-  const double yaw = blend(a.yaw, b.yaw), pitch = blend(a.pitch, b.pitch), roll = blend(a.roll, b.roll);
+  const Sample sample = samples_[i] + f * (samples_[i + 1] - samples_[i]);
+  const double yaw = sample[3], pitch = sample[4], roll = sample[5];
   const Eigen::Vector3d forward(std::cos(yaw) * std::cos(pitch), std::sin(yaw) * std::cos(pitch), std::sin(pitch));
   const Eigen::Vector3d right(std::sin(yaw), -std::cos(yaw), 0.0);
   const Eigen::Vector3d down = forward.cross(right);
@@ -148,10 +133,7 @@ Rigid3 Trajectory::pose(double time_s) const {
   R.col(0) = std::cos(roll) * right + std::sin(roll) * down;
   R.col(1) = std::cos(roll) * down - std::sin(roll) * right;
   R.col(2) = forward;
-  Rigid3 T_world_camera;
-  T_world_camera.rotation = Eigen::Quaterniond(R).normalized();
-  T_world_camera.translation = a.position + f * (b.position - a.position);
-  return T_world_camera;
+  return {Eigen::Quaterniond(R).normalized(), sample.head<3>()};
 }
 
 Trajectory::Twist Trajectory::twist(double time_s) const {

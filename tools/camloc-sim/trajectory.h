@@ -37,12 +37,8 @@ class Trajectory {
   [[nodiscard]] Twist twist(double time_s) const;
 
  private:
-  struct Sample {
-    Eigen::Vector3d position;
-    double yaw, pitch, roll;
-  };
-  void smooth(double sigma_s);
-
+  /// Position, yaw, pitch, roll.
+  using Sample = Eigen::Matrix<double, 6, 1>;
   std::vector<Sample> samples_;  ///< every kStep seconds
 };
 

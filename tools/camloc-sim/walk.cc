@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tools/camloc-sim/furniture.h"
+#include "tools/camloc-sim/building.h"
 #include "tools/camloc-sim/noise.h"
 
 namespace camloc::sim {
@@ -23,7 +23,7 @@ class PathBuilder {
   void corridor(int side, double s, double n) {
     path_.push_back(plan_.sides[static_cast<std::size_t>(side)].place.point(s, n, 0).head<2>());
   }
-  /// Round the corner from the end of `side` into the next one, or back with `is_reverse`.
+  /// Round the corner from the end of `side` into the next one.
   void corner(int side) { corridor(side, plan_.sides[static_cast<std::size_t>(side)].length - n_); }
   /// In by the door, a turn around the room, and out again. `shift` moves the turn sideways.
   void office(std::size_t index, double shift, bool is_clockwise) {
@@ -61,14 +61,12 @@ void turn_back(PathBuilder* path, int side, double s, double sign) {
 std::vector<Eigen::Vector2d> mapping_path(const FloorPlan& plan) {
   PathBuilder path(plan, 1.1);
   path.corridor(0, 1.5);
-  for (const std::size_t office : {0U, 1U, 2U}) path.office(office, 0.0, office % 2 == 0);
-  path.corner(0);
-  for (const std::size_t office : {3U, 4U}) path.office(office, 0.0, office % 2 == 0);
-  path.corner(1);
-  for (const std::size_t office : {5U, 6U}) path.office(office, 0.0, office % 2 == 0);
-  path.corner(2);
-  for (const std::size_t office : {7U, 8U}) path.office(office, 0.0, office % 2 == 0);
-  path.corner(3);
+  for (int side = 0; side < static_cast<int>(plan.sides.size()); ++side) {
+    for (std::size_t office = 0; office < plan.offices.size(); ++office) {
+      if (plan.offices[office].side == side) path.office(office, 0.0, office % 2 == 0);
+    }
+    path.corner(side);
+  }
   turn_back(&path, 0, 8.0, 1.0);
   path.corridor(0, 1.1);
   path.corridor(3, 12.0);
@@ -123,18 +121,10 @@ double nearest_time(const Trajectory& trajectory, const Eigen::Vector2d& point) 
   return best_time;
 }
 
-Passer passer(const FloorPlan& plan, const Trajectory& trajectory, int side, double s, double speed, double n, double around_s,
-              std::uint32_t seed) {
-  const Eigen::Vector2d point = plan.sides[static_cast<std::size_t>(side)].place.point(s, 1.1, 0).head<2>();
-  const double time = nearest_time(trajectory, point);
+Passer passer(const World& world, int side, double s, double speed, double n, double around_s, std::uint32_t seed) {
+  const Eigen::Vector2d point = world.plan.sides[static_cast<std::size_t>(side)].place.point(s, 1.1, 0).head<2>();
+  const double time = nearest_time(world.trajectory, point);
   return {side, s, time, speed, n, time - around_s, time + around_s, seed};
-}
-
-}  // namespace
-
-std::vector<Eigen::Vector2d> walk_path(const FloorPlan& plan, SceneKind kind, std::uint32_t day) {
-  if (kind == SceneKind::kSmall) return small_path(plan, day);
-  return day == 1 ? mapping_path(plan) : other_day_path(plan);
 }
 
 WalkStyle walk_style(SceneKind kind, std::uint32_t day, std::uint32_t seed) {
@@ -153,36 +143,50 @@ WalkStyle walk_style(SceneKind kind, std::uint32_t day, std::uint32_t seed) {
   return style;
 }
 
-std::vector<Passer> plan_passers(const FloorPlan& plan, const Trajectory& trajectory, const SceneOptions& options) {
+std::vector<Passer> plan_passers(const World& world) {
+  const SceneOptions& options = world.options;
   if (options.day == 1) return {};
   const std::uint32_t seed = hash32(options.seed, options.day, 950);
   std::vector<Passer> result;
   if (options.kind == SceneKind::kSmall) {
-    result.push_back(passer(plan, trajectory, 1, 1.5, -0.8, 0.5, 8.0, seed));
-    result.push_back(passer(plan, trajectory, 1, 7.2, 0.0, 1.8, 1e6, seed + 1));
+    result.push_back(passer(world, 1, 1.5, -0.8, 0.5, 8.0, seed));
+    result.push_back(passer(world, 1, 7.2, 0.0, 1.8, 1e6, seed + 1));
     return result;
   }
-  result.push_back(passer(plan, trajectory, 0, 18.0, -1.0, 0.4, 14.0, seed));      // comes towards the camera
-  result.push_back(passer(plan, trajectory, 1, 17.0, 0.95, 1.5, 12.0, seed + 1));  // walks ahead
+  result.push_back(passer(world, 0, 18.0, -1.0, 0.4, 14.0, seed));      // comes towards the camera
+  result.push_back(passer(world, 1, 17.0, 0.95, 1.5, 12.0, seed + 1));  // walks ahead
   result.back().meet_s += 2.5;
-  result.push_back(passer(plan, trajectory, 2, 20.0, -1.1, 0.4, 14.0, seed + 2));
-  result.push_back(passer(plan, trajectory, 2, 48.0, 0.0, 0.35, 1e6, seed + 3));  // stands at the wall
-  result.push_back(passer(plan, trajectory, 3, 12.0, -0.9, 1.85, 14.0, seed));
+  result.push_back(passer(world, 2, 20.0, -1.1, 0.4, 14.0, seed + 2));
+  result.push_back(passer(world, 2, 48.0, 0.0, 0.35, 1e6, seed + 3));  // stands at the wall
+  result.push_back(passer(world, 3, 12.0, -0.9, 1.85, 14.0, seed));
   return result;
 }
 
-std::vector<Surface> people_at(const FloorPlan& plan, const Scene& scene, const std::vector<Passer>& passers, double time_s) {
+}  // namespace
+
+World make_world(const SceneOptions& options) {
+  const FloorPlan plan = floor_plan(options.kind, options.seed);
+  const std::vector<Eigen::Vector2d> path = options.kind == SceneKind::kSmall ? small_path(plan, options.day)
+                                            : options.day == 1                ? mapping_path(plan)
+                                                                              : other_day_path(plan);
+  const Trajectory trajectory(path, walk_style(options.kind, options.day, options.seed));
+  World world{options, plan, build_scene(plan, options), trajectory, {}};
+  world.passers = plan_passers(world);
+  return world;
+}
+
+std::vector<Surface> people_at(const World& world, double time_s) {
   Scene people;
-  for (const Passer& p : passers) {
+  for (const Passer& p : world.passers) {
     if (time_s < p.from_time_s || time_s > p.to_time_s) continue;
-    const CorridorSide& side = plan.sides[static_cast<std::size_t>(p.side)];
+    const CorridorSide& side = world.plan.sides[static_cast<std::size_t>(p.side)];
     const double s = p.meet_s + p.speed_m_s * (time_s - p.meet_time_s);
     if (s < 0.5 || s > side.length - 0.5) continue;
     const double stride = p.speed_m_s == 0 ? 0.0 : std::sin(2 * kPi * time_s * 0.9);
     const double facing = p.speed_m_s == 0 ? kPi : (p.speed_m_s > 0 ? 0.5 * kPi : -0.5 * kPi);
     add_person(&people, side.place.child(s, p.n, facing), p.seed, stride, 0);
   }
-  for (Surface& surface : people.surfaces) scene.bake_light(&surface);
+  for (Surface& surface : people.surfaces) world.scene.bake_light(&surface);
   return std::move(people.surfaces);
 }
 

@@ -7,15 +7,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "tools/camloc-sim/building.h"
+#include "tools/camloc-sim/floor_plan.h"
 #include "tools/camloc-sim/trajectory.h"
 
 namespace camloc::sim {
-
-/// Day 1 is the mapping walk: the whole loop and most offices, an overlap, then a stretch back in the other direction. Other
-/// days start elsewhere, keep to another side of the corridor, and visit other offices.
-[[nodiscard]] std::vector<Eigen::Vector2d> walk_path(const FloorPlan& plan, SceneKind kind, std::uint32_t day);
-[[nodiscard]] WalkStyle walk_style(SceneKind kind, std::uint32_t day, std::uint32_t seed);
 
 /// Somebody walking along a corridor side at constant speed, passing `meet_s` at `meet_time_s`; speed 0 stands.
 struct Passer {
@@ -25,9 +20,20 @@ struct Passer {
   std::uint32_t seed = 0;
 };
 
-/// Nobody on day 1. Otherwise people come towards the camera, walk ahead of it, or stand about.
-[[nodiscard]] std::vector<Passer> plan_passers(const FloorPlan& plan, const Trajectory& trajectory, const SceneOptions& options);
+/// A scene on one day, the walk through it and the other people. Read-only while frames are made.
+struct World {
+  SceneOptions options;
+  FloorPlan plan;
+  Scene scene;
+  Trajectory trajectory;
+  std::vector<Passer> passers;
+};
+/// On day 1, the mapping day, the camera walks the whole loop and most offices, an overlap, then a stretch back in the other
+/// direction; nobody else is there. On other days it starts elsewhere, keeps to another side of the corridor, and visits other
+/// offices; people come towards it, walk ahead of it, or stand about.
+[[nodiscard]] World make_world(const SceneOptions& options);
+
 /// Surfaces of everybody around at a time, light baked.
-[[nodiscard]] std::vector<Surface> people_at(const FloorPlan& plan, const Scene& scene, const std::vector<Passer>& passers, double time_s);
+[[nodiscard]] std::vector<Surface> people_at(const World& world, double time_s);
 
 }  // namespace camloc::sim

@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
+#include "tools/camloc-sim/sensors.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "tools/camloc-sim/color_sensor.h"
-#include "tools/camloc-sim/depth_sensor.h"
-#include "tools/camloc-sim/frame_maker.h"
 
 namespace camloc::sim {
 namespace {
@@ -33,9 +31,7 @@ DepthStatistics measure_wall(double z, bool is_perfect) {
   const Scene scene = wall_at(z, Material::kPaint);
   const RgbdCamera camera = simulated_camera();
   Renderer renderer(scene, camera.color);
-  DepthSensorOptions options;
-  options.is_perfect = is_perfect;
-  DepthSensor sensor(camera.color, options);
+  DepthSensor sensor(camera.color, is_perfect);
   Image<std::uint16_t> depth;
   double sum = 0, squares = 0;
   int count = 0, all = 0;
@@ -87,7 +83,7 @@ TEST(DepthSensor, AnObjectCastsAShadowOnItsLeft) {
   scene.bake_light();
   const RgbdCamera camera = simulated_camera();
   Renderer renderer(scene, camera.color);
-  DepthSensor sensor(camera.color, {});
+  DepthSensor sensor(camera.color, false);
   Image<std::uint16_t> depth;
   sensor.measure(renderer.render(looking_along_x(), {}), renderer, 1, &depth);
   const auto count_missing = [&](int from, int to) {

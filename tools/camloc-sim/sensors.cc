@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc-sim/color_sensor.h"
+#include "tools/camloc-sim/sensors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +8,12 @@
 namespace camloc::sim {
 namespace {
 
+constexpr double kDepthUnitM = 0.0002;  // per raw unit: TUM's factor 5000
+constexpr double kBaselineM = 0.075;    // camera to projector
+constexpr double kFocalPx = 580;        // of the infrared camera
+constexpr double kDisparityStepPx = 0.125;
+constexpr double kNoisePerM = 0.0015;  // sigma of depth before the steps is kNoisePerM * z^2
+constexpr float kMinM = 0.5F, kMaxM = 5.0F;
 constexpr float kTargetTone = 0.50F;
 
 float bilinear(const Image<float>& image, float x, float y) {
@@ -19,7 +25,32 @@ float bilinear(const Image<float>& image, float x, float y) {
   return (1 - fy) * (a[0] + fx * (a[1] - a[0])) + fy * (b[0] + fx * (b[1] - b[0]));
 }
 
+/// Of the whole depth sensor, steps included: what a user of the data should assume.
+DepthNoise expected_noise() {
+  // A step of d px in disparity is d z^2 / (f b) in depth; rounding to it adds a uniform error.
+  const double step_per_m = kDisparityStepPx / (kFocalPx * kBaselineM);
+  return {0.0005, std::hypot(kNoisePerM, step_per_m / std::sqrt(12.0))};
+}
+
+void measure_exactly(const Rendering& rendering, Image<std::uint16_t>* depth) {
+  for (std::size_t i = 0; i < depth->pixels.size(); ++i) {
+    const double raw = std::round(rendering.depth_m.pixels[i] / kDepthUnitM);
+    depth->pixels[i] = raw < 65535.0 ? static_cast<std::uint16_t>(raw) : std::uint16_t{0};
+  }
+}
+
 }  // namespace
+
+RgbdCamera simulated_camera() {
+  RgbdCamera camera;
+  camera.name = "camloc-sim";
+  camera.color = camera.depth = {640, 480, 525.0, 525.0, 319.5, 239.5};
+  camera.depth_unit_m = kDepthUnitM;
+  camera.min_depth_m = 0.4;
+  camera.max_depth_m = 5.5;
+  camera.depth_noise = expected_noise();
+  return camera;
+}
 
 std::vector<Exposure> auto_expose(const std::vector<float>& mean_tones, double interval_s) {
   constexpr double kReaction_s = 0.35;
@@ -36,9 +67,7 @@ std::vector<Exposure> auto_expose(const std::vector<float>& mean_tones, double i
 }
 
 ColorSensor::ColorSensor(const Intrinsics& intrinsics) : intrinsics_(intrinsics) {
-  vignette_.resize(intrinsics.width, intrinsics.height);
-  radiance_.resize(intrinsics.width, intrinsics.height);
-  scratch_.resize(intrinsics.width, intrinsics.height);
+  for (Image<float>* image : {&vignette_, &radiance_, &scratch_}) image->resize(intrinsics.width, intrinsics.height);
   const double corner_squared = intrinsics.cx * intrinsics.cx + intrinsics.cy * intrinsics.cy;
   for (int y = 0; y < intrinsics.height; ++y) {
     for (int x = 0; x < intrinsics.width; ++x) {
@@ -114,6 +143,61 @@ void ColorSensor::expose(const Rendering& rendering, const Trajectory::Twist& tw
       const float light = in[x] * exposure.gain * (is_perfect ? 1.0F : vignette[x]);
       const float level = 255.0F * std::sqrt(std::max(light, 0.0F)) + sigma * normal_(random());
       out[x] = static_cast<std::uint8_t>(std::clamp(level + 0.5F, 0.0F, 255.0F));
+    }
+  }
+}
+
+void DepthSensor::mark_shadows(const Rendering& rendering, int y) {
+  // The projector sits to the right: a point at disparity d appears to it at column x - d (scaled to colour pixels). A point
+  // whose column is already passed by something nearer, further right in the image, lies in its shadow.
+  const int width = intrinsics_.width;
+  is_shadowed_.assign(static_cast<std::size_t>(width), 0);
+  const float scale = static_cast<float>(intrinsics_.fx * kBaselineM);
+  float leftmost = 1e9F;
+  for (int x = width - 1; x >= 0; --x) {
+    const float z = rendering.depth_m.at(x, y);
+    const float column = static_cast<float>(x) - (z > 0.0F ? scale / z : 0.0F);
+    if (column > leftmost + 0.5F) is_shadowed_[static_cast<std::size_t>(x)] = 1;
+    leftmost = std::min(leftmost, column);
+  }
+}
+
+void DepthSensor::measure(const Rendering& rendering, const Renderer& renderer, std::uint32_t frame_seed, Image<std::uint16_t>* depth) {
+  depth->resize(intrinsics_.width, intrinsics_.height);
+  if (is_perfect_) return measure_exactly(rendering, depth);
+  const int width = intrinsics_.width, height = intrinsics_.height;
+  const float focal_baseline = static_cast<float>(kFocalPx * kBaselineM);
+  const float sigma_px = static_cast<float>(kNoisePerM) * focal_baseline;
+  const float step = static_cast<float>(kDisparityStepPx);
+  Xorshift random(hash32(frame_seed, 2));
+  for (int y = 0; y < height; ++y) {
+    mark_shadows(rendering, y);
+    for (int x = 0; x < width; ++x) {
+      const std::uint32_t bits = random(), more_bits = random();
+      // Matching windows cover several pixels: now and then a neighbour's depth wins, which frays edges.
+      const int from_x = std::clamp(x + static_cast<int>((bits >> 3) % 5U) - 2, 0, width - 1),
+                from_y = std::clamp(y + static_cast<int>((bits >> 9) % 3U) - 1, 0, height - 1);
+      const bool strays = (bits & 7U) == 0U;
+      const bool is_edge = rendering.surface.at(from_x, from_y) != rendering.surface.at(x, y);
+      const float z = strays ? rendering.depth_m.at(from_x, from_y) : rendering.depth_m.at(x, y);
+      std::uint16_t& out = depth->at(x, y);
+      out = 0;
+      if (z < kMinM || z > kMaxM) continue;
+      if (is_shadowed_[static_cast<std::size_t>(x)] != 0U) continue;
+      if (is_edge && std::fabs(rendering.depth_m.at(from_x, from_y) - rendering.depth_m.at(x, y)) > 0.02F * z && (bits >> 16) % 4U == 0U)
+        continue;
+      // Little light comes back at a grazing angle, and from far away; shiny things answer in patches.
+      const float cosine = rendering.cosine.at(x, y);
+      const bool is_unfriendly = is_emissive(renderer.seen_surface(rendering.surface.at(x, y)).skin.material);
+      if (is_unfriendly || cosine < 0.18F + 0.02F * z) {
+        const float patch = value_noise(static_cast<float>(x) * 0.15F, static_cast<float>(y) * 0.15F, frame_seed);
+        if (cosine < 0.10F + 0.08F * patch + 0.02F * z || (is_unfriendly && patch > -0.35F)) continue;
+      }
+      const float disparity = focal_baseline / z + sigma_px * normal_(more_bits);
+      const float stepped = step * std::floor(disparity / step + 0.5F);
+      const float measured = focal_baseline / std::max(stepped, step);
+      const float raw = measured / static_cast<float>(kDepthUnitM);
+      if (raw < 65534.0F) out = static_cast<std::uint16_t>(raw + 0.5F);
     }
   }
 }
