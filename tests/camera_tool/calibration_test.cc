@@ -9,7 +9,6 @@
 #include "core/io/camera_file.h"
 #include "drivers/sources.h"
 #include "tests/camera_tool/rendered_board.h"
-#include "tools/camloc-camera/coverage_picture.h"
 
 namespace camloc::camera_tool {
 namespace {
@@ -76,9 +75,7 @@ TEST(LensFitTest, SigmasAreHonest) {
     int count = 0;
     // Of seed 21 OpenCV's equidistant calibration makes nothing unless it is started elsewhere. Over 40 seeds the mean is 1.06, 1.02.
     for (std::uint32_t seed = 18; seed <= 24; ++seed) {
-      LensFitOptions options;
-      options.lens = lens;
-      const auto fit = fit_lens(board, exact_views(board, truth, 15, 0.2, seed), truth.width, truth.height, options);
+      const auto fit = fit_lens(board, exact_views(board, truth, 15, 0.2, seed), truth.width, truth.height, lens);
       ASSERT_TRUE(fit.is_ok()) << fit.status().message();
       EXPECT_NEAR(fit->rms_px, 0.2 * std::sqrt(2.0), 0.03);
       for (const double z : z_scores(*fit, truth)) {
@@ -194,8 +191,7 @@ Result<Calibration> calibrate_rendered(const char* board_text, const RgbdCamera&
   EXPECT_GT(views->views.size(), static_cast<std::size_t>(num_views) * 3 / 4);
   auto calibration = calibrate(*views, options);
   if (calibration && report != nullptr) *report = format_report(*calibration, *views);
-  if (calibration && picture != nullptr)
-    *picture = draw_coverage({&options.board, views->views, &calibration->lens, calibration->held_out});
+  if (calibration && picture != nullptr) *picture = draw_coverage(options.board, *calibration, *views);
   return calibration;
 }
 

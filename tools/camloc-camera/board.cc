@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <opencv2/aruco/charuco.hpp>
 #include <opencv2/calib3d.hpp>
 #include <optional>
@@ -19,25 +18,12 @@ namespace {
 constexpr std::size_t kMinCharucoCorners = 8;
 constexpr int kMaxSide = 60;
 
-constexpr std::array<std::pair<std::string_view, int>, 17> kDictionaries{{
-    {"DICT_4X4_50", cv::aruco::DICT_4X4_50},
-    {"DICT_4X4_100", cv::aruco::DICT_4X4_100},
-    {"DICT_4X4_250", cv::aruco::DICT_4X4_250},
-    {"DICT_4X4_1000", cv::aruco::DICT_4X4_1000},
-    {"DICT_5X5_50", cv::aruco::DICT_5X5_50},
-    {"DICT_5X5_100", cv::aruco::DICT_5X5_100},
-    {"DICT_5X5_250", cv::aruco::DICT_5X5_250},
-    {"DICT_5X5_1000", cv::aruco::DICT_5X5_1000},
-    {"DICT_6X6_50", cv::aruco::DICT_6X6_50},
-    {"DICT_6X6_100", cv::aruco::DICT_6X6_100},
-    {"DICT_6X6_250", cv::aruco::DICT_6X6_250},
-    {"DICT_6X6_1000", cv::aruco::DICT_6X6_1000},
-    {"DICT_7X7_50", cv::aruco::DICT_7X7_50},
-    {"DICT_7X7_100", cv::aruco::DICT_7X7_100},
-    {"DICT_7X7_250", cv::aruco::DICT_7X7_250},
-    {"DICT_7X7_1000", cv::aruco::DICT_7X7_1000},
-    {"DICT_ARUCO_ORIGINAL", cv::aruco::DICT_ARUCO_ORIGINAL},
-}};
+/// In the order of cv::aruco::PREDEFINED_DICTIONARY_NAME.
+constexpr std::array<std::string_view, 17> kDictionaries{
+    "DICT_4X4_50",  "DICT_4X4_100",  "DICT_4X4_250", "DICT_4X4_1000", "DICT_5X5_50",        "DICT_5X5_100",
+    "DICT_5X5_250", "DICT_5X5_1000", "DICT_6X6_50",  "DICT_6X6_100",  "DICT_6X6_250",       "DICT_6X6_1000",
+    "DICT_7X7_50",  "DICT_7X7_100",  "DICT_7X7_250", "DICT_7X7_1000", "DICT_ARUCO_ORIGINAL"};
+static_assert(cv::aruco::DICT_4X4_50 == 0 && cv::aruco::DICT_ARUCO_ORIGINAL + 1 == kDictionaries.size());
 
 std::optional<double> parse_length_m(std::string_view text) {
   for (const auto& [unit, scale] : {std::pair<std::string_view, double>{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1.0}}) {
@@ -66,13 +52,13 @@ Status parse_charuco(const std::vector<std::string_view>& parts, const std::stri
     return {ErrorCode::kInvalid, context + "the side of a marker is missing, or not smaller than that of a square"};
   board->marker_m = *marker_m;
   const std::string_view name = parts.size() > 4 ? parts[4] : "DICT_5X5_100";
-  const auto found = std::find_if(kDictionaries.begin(), kDictionaries.end(), [&](const auto& entry) { return entry.first == name; });
+  const auto found = std::find(kDictionaries.begin(), kDictionaries.end(), name);
   if (found == kDictionaries.end()) {
     std::string known;
-    for (const auto& [known_name, value] : kDictionaries) known += (known.empty() ? "" : ", ") + std::string(known_name);
+    for (const std::string_view other : kDictionaries) known += (known.empty() ? "" : ", ") + std::string(other);
     return {ErrorCode::kInvalid, context + "no dictionary " + in_quotes(name) + "; known: " + known};
   }
-  board->dictionary = found->second;
+  board->dictionary = static_cast<int>(found - kDictionaries.begin());
   const int num_markers = board->columns * board->rows / 2;
   if (cv::aruco::getPredefinedDictionary(board->dictionary)->bytesList.rows < num_markers) {
     return {ErrorCode::kInvalid, context + std::string(name) + " has too few markers, " + std::to_string(num_markers) + " are needed"};
@@ -135,40 +121,27 @@ Result<Board> parse_board(const std::string& text) {
   return board;
 }
 
-struct BoardDetector::Markers {
-  cv::Ptr<cv::aruco::CharucoBoard> board;
-  cv::Ptr<cv::aruco::DetectorParameters> parameters;
-};
-
-BoardDetector::BoardDetector(const Board& board) : board_(board) {
-  if (board.kind != Board::Kind::kCharuco) return;
-  markers_ = std::make_unique<Markers>();
-  markers_->board =
-      cv::aruco::CharucoBoard::create(board.columns, board.rows, static_cast<float>(board.square_m), static_cast<float>(board.marker_m),
-                                      cv::aruco::getPredefinedDictionary(board.dictionary));
-  markers_->parameters = cv::aruco::DetectorParameters::create();
-}
-
-BoardDetector::~BoardDetector() = default;
-
-BoardCorners BoardDetector::detect(const Image<std::uint8_t>& gray) const {
+BoardCorners detect_board(const Board& board, const Image<std::uint8_t>& gray) {
   // OpenCV takes pixels it does not change through a pointer to non-const.
   const cv::Mat image(gray.height, gray.width, CV_8UC1, const_cast<std::uint8_t*>(gray.pixels.data()));
   try {
-    if (!markers_) return detect_chessboard(image, board_);
+    if (board.kind == Board::Kind::kChessboard) return detect_chessboard(image, board);
+    const auto charuco =
+        cv::aruco::CharucoBoard::create(board.columns, board.rows, static_cast<float>(board.square_m), static_cast<float>(board.marker_m),
+                                        cv::aruco::getPredefinedDictionary(board.dictionary));
     std::vector<std::vector<cv::Point2f>> markers, rejected;
     std::vector<int> marker_ids;
-    cv::aruco::detectMarkers(image, markers_->board->dictionary, markers, marker_ids, markers_->parameters, rejected);
-    cv::aruco::refineDetectedMarkers(image, markers_->board, markers, marker_ids, rejected);
+    cv::aruco::detectMarkers(image, charuco->dictionary, markers, marker_ids, cv::aruco::DetectorParameters::create(), rejected);
+    cv::aruco::refineDetectedMarkers(image, charuco, markers, marker_ids, rejected);
     if (marker_ids.empty()) return {};
     cv::Mat pixels, ids;
-    cv::aruco::interpolateCornersCharuco(markers, marker_ids, image, markers_->board, pixels, ids);
+    cv::aruco::interpolateCornersCharuco(markers, marker_ids, image, charuco, pixels, ids);
     BoardCorners corners;
     for (int i = 0; i < ids.rows; ++i) {
       corners.ids.push_back(ids.at<int>(i));
       corners.pixels.emplace_back(pixels.at<cv::Point2f>(i).x, pixels.at<cv::Point2f>(i).y);
     }
-    return corners.ids.size() >= kMinCharucoCorners && spans_plane(board_, corners.ids) ? corners : BoardCorners{};
+    return corners.ids.size() >= kMinCharucoCorners && spans_plane(board, corners.ids) ? corners : BoardCorners{};
   } catch (const cv::Exception&) {
     return {};  // what OpenCV cannot make sense of shows no board
   }

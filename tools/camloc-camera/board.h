@@ -6,7 +6,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -38,22 +37,8 @@ struct BoardCorners {
   std::vector<Eigen::Vector2d> pixels;  ///< pixel centres at integers
 };
 
-/// Not thread-safe.
-class BoardDetector {
- public:
-  explicit BoardDetector(const Board& board);
-  ~BoardDetector();
-  BoardDetector(const BoardDetector&) = delete;
-  BoardDetector& operator=(const BoardDetector&) = delete;
-
-  /// Empty where the board is not seen. A chessboard is seen whole or not at all; of a ChArUco board at least eight corners
-  /// that are not all in one row.
-  [[nodiscard]] BoardCorners detect(const Image<std::uint8_t>& gray) const;
-
- private:
-  struct Markers;
-  Board board_;
-  std::unique_ptr<Markers> markers_;
-};
+/// Empty where the board is not seen. A chessboard is seen whole or not at all; of a ChArUco board at least eight corners that are
+/// not all in one row.
+[[nodiscard]] BoardCorners detect_board(const Board& board, const Image<std::uint8_t>& gray);
 
 }  // namespace camloc::camera_tool

@@ -12,10 +12,14 @@
 namespace camloc::camera_tool {
 namespace {
 
+using tools::append_text;
+using tools::llu;
 using tools::text_of;
 
 constexpr std::chrono::milliseconds kPoll(100);
 constexpr std::uint64_t kMaxLookedAt = 600;
+constexpr std::size_t kMaxCandidates = 150, kMaxHeldOut = 15;  // different views
+constexpr double kMinShift = 0.03;                             // of the image's width, by which a view must differ from the others
 constexpr double kGoodCoverage = 0.75;
 constexpr double kHeldOutRatio = 1.6;     // held-out over fitted error; more is a lens that was fitted to noise
 constexpr double kMinScaleError = 0.003;  // a printed board is rarely better
@@ -88,9 +92,9 @@ std::string format_lens(const LensFit& lens) {
   for (std::size_t i = 0; i < count; ++i) {
     const char* name = k.lens == LensModel::kEquidistant ? kEquidistant[i] : kBrown[i];
     if (lens.distortion_sigma[i] > 0) {
-      tools::append_text(&text, "  %s %10.5f +- %.5f\n", name, k.distortion[i], lens.distortion_sigma[i]);
+      append_text(&text, "  %s %10.5f +- %.5f\n", name, k.distortion[i], lens.distortion_sigma[i]);
     } else {
-      tools::append_text(&text, "  %s          0 (the views do not determine it)\n", name);
+      append_text(&text, "  %s          0 (the views do not determine it)\n", name);
     }
   }
   return text;
@@ -103,12 +107,12 @@ std::string format_views(const LensFit& lens, const CalibrationViews& views) {
   std::sort(order.begin(), order.end(), [&lens](std::size_t a, std::size_t b) { return lens.used[a] < lens.used[b]; });
   for (const std::size_t i : order) {
     const BoardView& view = views.views[lens.used[i]];
-    tools::append_text(&text, "  %5llu  %7zu  %6.3f  %10.2f\n", static_cast<unsigned long long>(view.sequence), view.corners.ids.size(),
-                       lens.view_rms_px[i], lens.T_camera_board[i].translation.norm());
+    append_text(&text, "  %5llu  %7zu  %6.3f  %10.2f\n", llu(view.sequence), view.corners.ids.size(), lens.view_rms_px[i],
+                lens.T_camera_board[i].translation.norm());
   }
   for (const std::size_t index : lens.dropped) {
-    tools::append_text(&text, "  %5llu  %7zu  dropped: does not fit the others\n",
-                       static_cast<unsigned long long>(views.views[index].sequence), views.views[index].corners.ids.size());
+    append_text(&text, "  %5llu  %7zu  dropped: does not fit the others\n", llu(views.views[index].sequence),
+                views.views[index].corners.ids.size());
   }
   return text;
 }
@@ -116,15 +120,15 @@ std::string format_views(const LensFit& lens, const CalibrationViews& views) {
 std::string format_depth(const DepthFit& depth) {
   std::string text = text_of("depth       %zu views from %.2f to %.2f m: measured = %.4f (+- %.4f) * true", depth.planes.size(),
                              depth.near_m, depth.far_m, depth.scale, depth.scale_sigma);
-  if (depth.has_offset) tools::append_text(&text, " %+.1f (+- %.1f) mm", 1e3 * depth.offset_m, 1e3 * depth.offset_sigma_m);
-  tools::append_text(&text, "\n            noise of a pixel: %.2f mm + %.2f mm * (z / m)^2\n", 1e3 * depth.noise.constant_m,
-                     1e3 * depth.noise.quadratic_per_m);
+  if (depth.has_offset) append_text(&text, " %+.1f (+- %.1f) mm", 1e3 * depth.offset_m, 1e3 * depth.offset_sigma_m);
+  append_text(&text, "\n            noise of a pixel: %.2f mm + %.2f mm * (z / m)^2\n", 1e3 * depth.noise.constant_m,
+              1e3 * depth.noise.quadratic_per_m);
   text += "     z m  measured - true mm  noise mm  pixels\n";
   const std::size_t step = std::max<std::size_t>(1, depth.planes.size() / 10);
   for (std::size_t i = 0; i < depth.planes.size(); i += step) {
     const DepthPlane& plane = depth.planes[i];
-    tools::append_text(&text, "  %6.2f  %18.1f  %8.2f  %6zu\n", plane.true_z_m, 1e3 * (plane.z_m - plane.true_z_m), 1e3 * plane.noise_m,
-                       plane.num_pixels);
+    append_text(&text, "  %6.2f  %18.1f  %8.2f  %6zu\n", plane.true_z_m, 1e3 * (plane.z_m - plane.true_z_m), 1e3 * plane.noise_m,
+                plane.num_pixels);
   }
   return text;
 }
@@ -141,12 +145,11 @@ std::string format_extrinsic(const ExtrinsicFit& fit) {
 }  // namespace
 
 Result<CalibrationViews> collect_views(FrameSource* source, const CalibrationOptions& options, const CollectProgress& progress) {
-  const BoardDetector detector(options.board);
   CalibrationViews views;
   FrameBuffer frame;
   // Looking for the board takes 0.1 s; a long recording shows the same again and again.
   const std::uint64_t step = std::max<std::uint64_t>(1, source->info().num_frames.value_or(0) / kMaxLookedAt);
-  while (views.views.size() < options.max_candidates) {
+  while (views.views.size() < kMaxCandidates) {
     const Status status = source->next(&frame, kPoll);
     if (status.code() == ErrorCode::kEnd) break;
     if (status.code() == ErrorCode::kTimeout || status.code() == ErrorCode::kCorrupt) {
@@ -161,9 +164,9 @@ Result<CalibrationViews> collect_views(FrameSource* source, const CalibrationOpt
     if (views.width == 0) views.width = frame.gray.width, views.height = frame.gray.height;
     if (frame.gray.width != views.width || frame.gray.height != views.height) continue;
     if ((views.num_frames - 1) % step != 0) continue;
-    BoardCorners corners = detector.detect(frame.gray);
+    BoardCorners corners = detect_board(options.board, frame.gray);
     views.num_with_board += corners.ids.empty() ? 0 : 1;
-    if (!corners.ids.empty() && is_new_view(corners, views.views, options.min_shift * views.width)) {
+    if (!corners.ids.empty() && is_new_view(corners, views.views, kMinShift * views.width)) {
       views.views.push_back({frame.sequence, std::move(corners), options.wants_depth ? frame.depth : Image<std::uint16_t>{}});
     }
     if (!progress(views)) break;
@@ -178,9 +181,9 @@ Result<Calibration> calibrate(const CalibrationViews& views, const CalibrationOp
         ErrorCode::kInvalid,
         text_of(
             "the board was seen in none of %llu images; check --board, light, and that all of the board with its white margin is in view",
-            static_cast<unsigned long long>(views.num_frames)));
+            llu(views.num_frames)));
   }
-  const ViewChoice choice = choose_views(options.board, views.views, views.width, views.height, options.max_views, options.max_held_out);
+  const ViewChoice choice = choose_views(options.board, views.views, views.width, views.height, options.max_views, kMaxHeldOut);
   std::vector<BoardView> chosen;
   for (const std::size_t index : choice.fit) chosen.push_back({views.views[index].sequence, views.views[index].corners, {}});
   Result<LensFit> lens = fit_lens(options.board, chosen, views.width, views.height, options.lens);
@@ -208,14 +211,13 @@ Result<Calibration> calibrate(const CalibrationViews& views, const CalibrationOp
 
 std::string format_report(const Calibration& calibration, const CalibrationViews& views) {
   const LensFit& lens = calibration.lens;
-  std::string text =
-      text_of("images      %llu, the board in %llu, %zu of them unlike each other\n", static_cast<unsigned long long>(views.num_frames),
-              static_cast<unsigned long long>(views.num_with_board), views.views.size());
-  tools::append_text(&text, "views       %zu used, %zu dropped, %zu held out; %.0f %% of the image covered, tilt up to %.0f deg\n",
-                     lens.used.size(), lens.dropped.size(), calibration.held_out.size(), 100 * calibration.grid.covered(),
-                     tools::degrees(lens.max_tilt_rad));
-  tools::append_text(&text, "error       %.3f px rms", lens.rms_px);
-  if (calibration.num_held_out_corners > 0) tools::append_text(&text, ", %.3f px on the views held out", calibration.held_out_rms_px);
+  std::string text = text_of("images      %llu, the board in %llu, %zu of them unlike each other\n", llu(views.num_frames),
+                             llu(views.num_with_board), views.views.size());
+  append_text(&text, "views       %zu used, %zu dropped, %zu held out; %.0f %% of the image covered, tilt up to %.0f deg\n",
+              lens.used.size(), lens.dropped.size(), calibration.held_out.size(), 100 * calibration.grid.covered(),
+              tools::degrees(lens.max_tilt_rad));
+  append_text(&text, "error       %.3f px rms", lens.rms_px);
+  if (calibration.num_held_out_corners > 0) append_text(&text, ", %.3f px on the views held out", calibration.held_out_rms_px);
   text += "\nlens (standard deviations)\n" + format_lens(lens) + format_views(lens, views);
   if (calibration.extrinsic) text += format_extrinsic(*calibration.extrinsic);
   if (calibration.depth) text += format_depth(*calibration.depth);
@@ -228,13 +230,12 @@ std::string format_camera_file(const Calibration& calibration, const std::string
   std::string text =
       text_of("# camloc camera calibrate --board %s: %zu views, %.3f px rms", board_text.c_str(), lens.used.size(), lens.rms_px);
   if (calibration.num_held_out_corners > 0)
-    tools::append_text(&text, ", %.3f px on %zu views held out", calibration.held_out_rms_px, calibration.held_out.size());
-  tools::append_text(&text, "\n# standard deviations: fx %.3f fy %.3f cx %.3f cy %.3f px\n", lens.sigma[0], lens.sigma[1], lens.sigma[2],
-                     lens.sigma[3]);
+    append_text(&text, ", %.3f px on %zu views held out", calibration.held_out_rms_px, calibration.held_out.size());
+  append_text(&text, "\n# standard deviations: fx %.3f fy %.3f cx %.3f cy %.3f px\n", lens.sigma[0], lens.sigma[1], lens.sigma[2],
+              lens.sigma[3]);
   if (calibration.depth) {
-    tools::append_text(&text, "# depth: measured = %.4f (+- %.4f) * true %+.1f mm, %.2f to %.2f m\n", calibration.depth->scale,
-                       calibration.depth->scale_sigma, 1e3 * calibration.depth->offset_m, calibration.depth->near_m,
-                       calibration.depth->far_m);
+    append_text(&text, "# depth: measured = %.4f (+- %.4f) * true %+.1f mm, %.2f to %.2f m\n", calibration.depth->scale,
+                calibration.depth->scale_sigma, 1e3 * calibration.depth->offset_m, calibration.depth->near_m, calibration.depth->far_m);
   }
   return text + format_camera_toml(calibration.camera);
 }

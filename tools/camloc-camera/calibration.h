@@ -6,23 +6,36 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "core/io/image_file.h"
 #include "drivers/frame_source.h"
 #include "tools/camloc-camera/depth_fit.h"
 #include "tools/camloc-camera/lens_fit.h"
-#include "tools/camloc-camera/view_selection.h"
 
 namespace camloc::camera_tool {
 
+/// Corners per cell of a grid over the image, row by row.
+struct CoverageGrid {
+  static constexpr int kColumns = 10, kRows = 8;
+  int width = 0, height = 0;  ///< of the image
+  std::vector<int> counts = std::vector<int>(static_cast<std::size_t>(kColumns * kRows));
+
+  void add(const BoardCorners& corners);
+  [[nodiscard]] std::size_t cell_of(const Eigen::Vector2d& pixel) const;
+  /// Share of the cells with a corner.
+  [[nodiscard]] double covered() const;
+  /// "the left, the bottom": sides of the image with less than half of their cells covered; "" for none.
+  [[nodiscard]] std::string bare_sides() const;
+};
+
 struct CalibrationOptions {
   Board board;
-  LensFitOptions lens;
-  std::size_t max_views = 40, max_held_out = 15;
-  std::size_t max_candidates = 150;  ///< different views that are collected
-  double min_shift = 0.03;           ///< of the image's width, by which a view must differ from the others
-  std::optional<RgbdCamera> known;   ///< name, depth intrinsics, unit: what is not measured here
+  LensModel lens = LensModel::kBrownConrady;
+  std::size_t max_views = 40;
+  std::optional<RgbdCamera> known;  ///< name, depth intrinsics, unit: what is not measured here
   bool wants_depth = true;
   bool corrects_depth_unit = false;  ///< divide the depth unit by the measured scale
 };
@@ -61,5 +74,23 @@ using CollectProgress = std::function<bool(const CalibrationViews&)>;
 [[nodiscard]] std::string format_report(const Calibration& calibration, const CalibrationViews& views);
 /// The camera file, with how it came about in comments.
 [[nodiscard]] std::string format_camera_file(const Calibration& calibration, const std::string& board_text);
+/// Cells of the grid, the darker the fewer corners; every corner, with its error 100 times too long; below it what the colours mean.
+[[nodiscard]] ColorImage draw_coverage(const Board& board, const Calibration& calibration, const CalibrationViews& views);
+
+// Which of the images are worth calibrating with: a hundred alike weigh no more than one, and the lens is known only where corners
+// were (view_selection.cc).
+
+/// Whether the corners lie elsewhere than in each of the views, by `min_shift_px` in the mean.
+[[nodiscard]] bool is_new_view(const BoardCorners& corners, std::span<const BoardView> views, double min_shift_px);
+
+struct ViewChoice {
+  std::vector<std::size_t> fit;       ///< to calibrate with, best first
+  std::vector<std::size_t> held_out;  ///< to test the result on; none of `fit`
+};
+
+/// Holds every fourth view out where there are sixteen or more, at most `max_held_out`; of the others takes the one that adds most
+/// to coverage and variety of angles, again and again, at most `max_fit`.
+[[nodiscard]] ViewChoice choose_views(const Board& board, std::span<const BoardView> views, int width, int height, std::size_t max_fit,
+                                      std::size_t max_held_out);
 
 }  // namespace camloc::camera_tool

@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc-camera/coverage_picture.h"
+//
+// The picture that belongs to a calibration: where in the image corners were, and by how much they miss.
 
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
+#include "tools/camloc-camera/calibration.h"
 #include "tools/common/text_format.h"
 
 namespace camloc::camera_tool {
@@ -75,26 +77,24 @@ class Canvas {
 
 }  // namespace
 
-ColorImage draw_coverage(const CoveragePicture& picture) {
-  const LensFit& fit = *picture.fit;
+ColorImage draw_coverage(const Board& board, const Calibration& calibration, const CalibrationViews& views) {
+  const LensFit& fit = calibration.lens;
   const Intrinsics& k = fit.intrinsics;
-  CoverageGrid grid{k.width, k.height};
-  for (const std::size_t view : fit.used) grid.add(picture.views[view].corners);
   Canvas canvas(k.width, k.height);
-  canvas.shade_cells(grid);
-  for (const std::size_t view : fit.dropped) canvas.draw_corners(picture.views[view].corners, {}, kDropped);
-  for (const std::size_t view : picture.held_out) canvas.draw_corners(picture.views[view].corners, {}, kHeldOut);
+  canvas.shade_cells(calibration.grid);
+  for (const std::size_t view : fit.dropped) canvas.draw_corners(views.views[view].corners, {}, kDropped);
+  for (const std::size_t view : calibration.held_out) canvas.draw_corners(views.views[view].corners, {}, kHeldOut);
   for (std::size_t i = 0; i < fit.used.size(); ++i) {
-    const BoardCorners& corners = picture.views[fit.used[i]].corners;
-    canvas.draw_corners(corners, reprojection_errors(*picture.board, corners, k, fit.T_camera_board[i]), kCorner);
+    const BoardCorners& corners = views.views[fit.used[i]].corners;
+    canvas.draw_corners(corners, reprojection_errors(board, corners, k, fit.T_camera_board[i]), kCorner);
   }
   canvas.draw_principal_point(k);
   canvas.write_legend(
       0,
       tools::text_of("blue: %zu views, rms %.3f px; red: errors, 1 px drawn %.0f px long; numbers: corners in a cell, %.0f %% of the cells",
-                     fit.used.size(), fit.rms_px, kErrorScale, 100 * grid.covered()),
+                     fit.used.size(), fit.rms_px, kErrorScale, 100 * calibration.grid.covered()),
       kCorner);
-  canvas.write_legend(1, tools::text_of("green: %zu views held out", picture.held_out.size()), kHeldOut);
+  canvas.write_legend(1, tools::text_of("green: %zu views held out", calibration.held_out.size()), kHeldOut);
   canvas.write_legend(2, tools::text_of("grey: %zu views dropped because they do not fit the others", fit.dropped.size()), kDropped);
   canvas.write_legend(3, tools::text_of("cross: principal point %.1f %.1f; fx %.2f fy %.2f", k.cx, k.cy, k.fx, k.fy), kText);
   return canvas.take();

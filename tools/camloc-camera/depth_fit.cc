@@ -108,20 +108,15 @@ std::optional<DepthPlane> fit_plane(std::vector<Sample> samples, const BoardInDe
   return plane;
 }
 
-struct SeenPlane {
-  std::size_t view;
-  DepthPlane plane;
-};
-
-std::vector<SeenPlane> see_planes(const Board& board, std::span<const BoardView> views, std::span<const Rigid3> T_color_board,
-                                  const RgbdCamera& camera, double margin_squares) {
+std::vector<DepthPlane> see_planes(const Board& board, std::span<const BoardView> views, std::span<const Rigid3> T_color_board,
+                                   const RgbdCamera& camera, double margin_squares) {
   const UndistortionTable rays(camera.depth);
-  std::vector<SeenPlane> seen;
+  std::vector<DepthPlane> seen;
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (views[i].depth.width != camera.depth.width || views[i].depth.height != camera.depth.height) continue;
     const BoardInDepth in_depth{T_color_board[i].inverse() * camera.T_color_depth, inner_rectangle(board, margin_squares)};
     const std::optional<DepthPlane> plane = fit_plane(samples_on(in_depth, views[i].depth, camera, rays), in_depth);
-    if (plane) seen.push_back({i, *plane});
+    if (plane) seen.emplace_back(*plane).view = i;
   }
   return seen;
 }
@@ -176,10 +171,10 @@ struct PlanePair {
   double color_distance_m, depth_distance_m;
 };
 
-PlanePair pair_up(const SeenPlane& seen, const Rigid3& T_color_board) {
+PlanePair pair_up(const DepthPlane& seen, const Rigid3& T_color_board) {
   PlanePair pair;
-  pair.depth_distance_m = 1 / seen.plane.inverse.norm();
-  pair.depth_normal = seen.plane.inverse * pair.depth_distance_m;
+  pair.depth_distance_m = 1 / seen.inverse.norm();
+  pair.depth_normal = seen.inverse * pair.depth_distance_m;
   pair.color_normal = T_color_board.rotation * Eigen::Vector3d::UnitZ();
   pair.color_distance_m = pair.color_normal.dot(T_color_board.translation);
   if (pair.color_distance_m < 0) {
@@ -248,7 +243,7 @@ Status too_few_planes(std::size_t count) {
 Result<DepthFit> fit_depth(const Board& board, std::span<const BoardView> views, std::span<const Rigid3> T_color_board,
                            const RgbdCamera& camera) {
   DepthFit fit;
-  for (const SeenPlane& seen : see_planes(board, views, T_color_board, camera, kMargin)) fit.planes.push_back(seen.plane);
+  fit.planes = see_planes(board, views, T_color_board, camera, kMargin);
   if (fit.planes.size() < kMinPlanes) return too_few_planes(fit.planes.size());
   const auto by_distance = [](const DepthPlane& a, const DepthPlane& b) { return a.true_z_m < b.true_z_m; };
   std::sort(fit.planes.begin(), fit.planes.end(), by_distance);
@@ -266,7 +261,7 @@ Result<ExtrinsicFit> fit_extrinsic(const Board& board, std::span<const BoardView
   Result<ExtrinsicFit> fit = too_few_planes(0);
   for (int round = 0; round < 4; ++round) {
     std::vector<PlanePair> pairs;
-    for (const SeenPlane& seen : see_planes(board, views, T_color_board, guess, round == 0 ? kWiderMargin : kMargin)) {
+    for (const DepthPlane& seen : see_planes(board, views, T_color_board, guess, round == 0 ? kWiderMargin : kMargin)) {
       pairs.push_back(pair_up(seen, T_color_board[seen.view]));
     }
     if (pairs.size() < kMinPlanes) return too_few_planes(pairs.size());

@@ -10,7 +10,6 @@
 
 #include <cstddef>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/base/result.h"
@@ -26,6 +25,7 @@ struct DepthPlane {
   double true_z_m = 0;                                ///< of the board by its corners, at the same place
   double noise_m = 0;                                 ///< standard deviation of single pixels about the plane
   std::size_t num_pixels = 0;
+  std::size_t view = 0;  ///< index of the view that shows it
 };
 
 struct DepthFit {

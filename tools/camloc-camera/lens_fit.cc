@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
-#include <optional>
 
 #include "core/base/order_statistics.h"
 #include "tools/common/text_format.h"
@@ -14,7 +13,11 @@
 namespace camloc::camera_tool {
 namespace {
 
-constexpr double kMinOutlierPx = 0.5;
+constexpr std::size_t kMinViews = 8;
+constexpr double kMaxViewRatio = 2.5, kMinOutlierPx = 0.5;  // a view with more than so many times the median error, and so much
+constexpr double kMaxDropped = 0.25;                        // of the views; more than that is no matter of single views
+constexpr double kMinTiltRad = 0.17;     // some view must show the board at such an angle, else focal length and distance are one
+constexpr double kMaxFocalSigma = 0.01;  // relative; above it the answer is not worth writing
 
 struct Correspondences {
   std::vector<std::vector<cv::Point3f>> board;
@@ -36,13 +39,15 @@ Rigid3 to_rigid(const cv::Mat& rotation_vector, const cv::Mat& translation) {
   return {exp_so3(r), {translation.at<double>(0), translation.at<double>(1), translation.at<double>(2)}};
 }
 
-cv::Matx33d camera_matrix(const Intrinsics& k) { return {k.fx, 0, k.cx, 0, k.fy, k.cy, 0, 0, 1}; }
-
-void set_camera_matrix(const cv::Mat& matrix, Intrinsics* k) {
-  k->fx = matrix.at<double>(0, 0);
-  k->fy = matrix.at<double>(1, 1);
-  k->cx = matrix.at<double>(0, 2);
-  k->cy = matrix.at<double>(1, 2);
+/// What OpenCV found, except for the deviations.
+void set_lens(LensModel lens, const cv::Mat& matrix, const cv::Mat& distortion, const std::vector<cv::Mat>& rotations,
+              const std::vector<cv::Mat>& translations, LensFit* fit) {
+  Intrinsics& k = fit->intrinsics;
+  k = {k.width, k.height, matrix.at<double>(0, 0), matrix.at<double>(1, 1), matrix.at<double>(0, 2), matrix.at<double>(1, 2), lens};
+  const int num_coefficients = lens == LensModel::kPinhole ? 0 : lens == LensModel::kEquidistant ? 4 : 5;
+  for (int i = 0; i < num_coefficients; ++i) k.distortion[static_cast<std::size_t>(i)] = distortion.at<double>(i);
+  fit->T_camera_board.clear();
+  for (std::size_t i = 0; i < rotations.size(); ++i) fit->T_camera_board.push_back(to_rigid(rotations[i], translations[i]));
 }
 
 /// OpenCV 4.6 divides the squared error by the number of points less that of the parameters, but every point is two measurements.
@@ -62,41 +67,35 @@ void solve_brown(const Correspondences& points, bool has_lens, bool has_k3, Lens
   if (!has_lens) flags |= cv::CALIB_FIX_K1 | cv::CALIB_FIX_K2 | cv::CALIB_FIX_K3 | cv::CALIB_ZERO_TANGENT_DIST;
   cv::calibrateCamera(points.board, points.image, {k.width, k.height}, matrix, distortion, rotations, translations, sigma, pose_sigma,
                       view_errors, flags, {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 100, 1e-10});
-  set_camera_matrix(matrix, &k);
-  k.lens = has_lens ? LensModel::kBrownConrady : LensModel::kPinhole;
-  for (int i = 0; i < 5; ++i) k.distortion[static_cast<std::size_t>(i)] = has_lens ? distortion.at<double>(i) : 0;
+  set_lens(has_lens ? LensModel::kBrownConrady : LensModel::kPinhole, matrix, distortion, rotations, translations, fit);
   const double correction = deviation_correction(points, 4 + (has_lens ? 4 : 0) + (has_k3 ? 1 : 0));
   for (int i = 0; i < 4; ++i) fit->sigma[static_cast<std::size_t>(i)] = correction * sigma.at<double>(i);
   for (int i = 0; i < 5; ++i) fit->distortion_sigma[static_cast<std::size_t>(i)] = has_lens ? correction * sigma.at<double>(4 + i) : 0;
-  fit->T_camera_board.clear();
-  for (std::size_t i = 0; i < rotations.size(); ++i) fit->T_camera_board.push_back(to_rigid(rotations[i], translations[i]));
 }
 
 /// OpenCV gives no deviations for this model: the inverse of the normal equations, the poses of the board eliminated.
-void equidistant_sigmas(const Correspondences& points, const std::vector<cv::Mat>& rotations, const std::vector<cv::Mat>& translations,
-                        LensFit* fit) {
+void equidistant_sigmas(const std::vector<std::vector<cv::Point3d>>& board, const std::vector<std::vector<cv::Point2d>>& image,
+                        const std::vector<cv::Mat>& rotations, const std::vector<cv::Mat>& translations, LensFit* fit) {
   using Matrix8d = Eigen::Matrix<double, 8, 8>;
   const Intrinsics& k = fit->intrinsics;
+  const cv::Matx33d matrix(k.fx, 0, k.cx, 0, k.fy, k.cy, 0, 0, 1);
   const cv::Vec4d distortion(k.distortion[0], k.distortion[1], k.distortion[2], k.distortion[3]);
   Matrix8d information = Matrix8d::Zero();
-  double sum = 0;
-  double num_values = -8;
-  for (std::size_t view = 0; view < points.board.size(); ++view) {
+  double sum = 0, num_values = -8;
+  for (std::size_t view = 0; view < board.size(); ++view) {
     cv::Mat projected, jacobian;
-    std::vector<cv::Point3d> board;
-    for (const cv::Point3f& p : points.board[view]) board.emplace_back(p.x, p.y, p.z);
-    cv::fisheye::projectPoints(board, projected, rotations[view], translations[view], camera_matrix(k), distortion, 0, jacobian);
+    cv::fisheye::projectPoints(board[view], projected, rotations[view], translations[view], matrix, distortion, 0, jacobian);
     const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> J(jacobian.ptr<double>(), jacobian.rows,
                                                                                                      jacobian.cols);
     const Eigen::MatrixXd lens = J.leftCols(8), pose = J.middleCols(8, 6);  // f c k | rotation translation | skew
     const Eigen::MatrixXd cross = lens.transpose() * pose;
     information += lens.transpose() * lens - cross * (pose.transpose() * pose).ldlt().solve(cross.transpose());
-    for (int i = 0; i < static_cast<int>(board.size()); ++i) {
+    for (int i = 0; i < static_cast<int>(board[view].size()); ++i) {
       const cv::Vec2d p = projected.at<cv::Vec2d>(i);
-      sum += std::pow(p[0] - points.image[view][static_cast<std::size_t>(i)].x, 2) +
-             std::pow(p[1] - points.image[view][static_cast<std::size_t>(i)].y, 2);
+      sum +=
+          std::pow(p[0] - image[view][static_cast<std::size_t>(i)].x, 2) + std::pow(p[1] - image[view][static_cast<std::size_t>(i)].y, 2);
     }
-    num_values += 2.0 * static_cast<double>(board.size()) - 6;
+    num_values += 2.0 * static_cast<double>(board[view].size()) - 6;
   }
   const Matrix8d covariance = information.ldlt().solve(Matrix8d::Identity()) * (sum / std::max(1.0, num_values));
   for (int i = 0; i < 4; ++i) {
@@ -132,13 +131,8 @@ void solve_equidistant(const Correspondences& points, LensFit* fit) {
       if (focal_per_width > 0.6) throw;  // the last one
     }
   }
-  set_camera_matrix(matrix, &k);
-  k.lens = LensModel::kEquidistant;
-  k.distortion = {};
-  for (int i = 0; i < 4; ++i) k.distortion[static_cast<std::size_t>(i)] = distortion.at<double>(i);
-  fit->T_camera_board.clear();
-  for (std::size_t i = 0; i < rotations.size(); ++i) fit->T_camera_board.push_back(to_rigid(rotations[i], translations[i]));
-  equidistant_sigmas(points, rotations, translations, fit);
+  set_lens(LensModel::kEquidistant, matrix, distortion, rotations, translations, fit);
+  equidistant_sigmas(board, image, rotations, translations, fit);
 }
 
 Status solve(const Board& board, std::span<const BoardView> views, LensModel lens, LensFit* fit) {
@@ -161,6 +155,13 @@ Status solve(const Board& board, std::span<const BoardView> views, LensModel len
           "the views do not determine a lens; tilt the board 20 to 45 degrees to all sides, and show it near and in the corners"};
 }
 
+/// Root of the mean squared length, 0 for none.
+double rms(std::span<const Eigen::Vector2d> errors) {
+  double sum = 0;
+  for (const Eigen::Vector2d& error : errors) sum += error.squaredNorm();
+  return errors.empty() ? 0 : std::sqrt(sum / static_cast<double>(errors.size()));
+}
+
 void measure(const Board& board, std::span<const BoardView> views, LensFit* fit) {
   fit->view_rms_px.clear();
   fit->max_tilt_rad = 0;
@@ -177,26 +178,26 @@ void measure(const Board& board, std::span<const BoardView> views, LensFit* fit)
 }
 
 /// Moves the worst view that does not fit the others from `used` to `dropped`; false where there is none.
-bool drop_worst(const LensFitOptions& options, std::size_t num_views, LensFit* fit) {
+bool drop_worst(std::size_t num_views, LensFit* fit) {
   const double median_px = upper_median(fit->view_rms_px);
   const auto worst = std::max_element(fit->view_rms_px.begin(), fit->view_rms_px.end());
-  if (*worst < std::max(kMinOutlierPx, options.max_view_ratio * median_px)) return false;
-  if (static_cast<double>(fit->dropped.size() + 1) > options.max_dropped * static_cast<double>(num_views)) return false;
+  if (*worst < std::max(kMinOutlierPx, kMaxViewRatio * median_px)) return false;
+  if (static_cast<double>(fit->dropped.size() + 1) > kMaxDropped * static_cast<double>(num_views)) return false;
   const auto index = worst - fit->view_rms_px.begin();
   fit->dropped.push_back(fit->used[static_cast<std::size_t>(index)]);
   fit->used.erase(fit->used.begin() + index);
   return true;
 }
 
-Status check_determined(const LensFit& fit, const LensFitOptions& options) {
-  if (fit.max_tilt_rad < options.min_tilt_rad) {
+Status check_determined(const LensFit& fit) {
+  if (fit.max_tilt_rad < kMinTiltRad) {
     return {ErrorCode::kInvalid,
             tools::text_of("the board was never tilted by more than %.0f degrees, so focal length and distance cannot be told apart; "
                            "tilt it 20 to 45 degrees to each side",
                            tools::degrees(fit.max_tilt_rad))};
   }
   const double focal_sigma = std::max(fit.sigma[0] / fit.intrinsics.fx, fit.sigma[1] / fit.intrinsics.fy);
-  if (!(focal_sigma <= options.max_focal_sigma)) {
+  if (!(focal_sigma <= kMaxFocalSigma)) {
     return {ErrorCode::kInvalid,
             tools::text_of("the views leave the focal length open by %.1f %%; add views with the board tilted, near, and in the corners",
                            100 * focal_sigma)};
@@ -206,22 +207,22 @@ Status check_determined(const LensFit& fit, const LensFitOptions& options) {
 
 }  // namespace
 
-Result<LensFit> fit_lens(const Board& board, std::span<const BoardView> views, int width, int height, const LensFitOptions& options) {
+Result<LensFit> fit_lens(const Board& board, std::span<const BoardView> views, int width, int height, LensModel lens) {
   const auto too_few = [&](std::size_t count) {
     return Status(ErrorCode::kInvalid,
-                  tools::text_of("%zu views of the board, %zu are needed; show it at more places and angles", count, options.min_views));
+                  tools::text_of("%zu views of the board, %zu are needed; show it at more places and angles", count, kMinViews));
   };
-  if (views.size() < options.min_views) return too_few(views.size());
+  if (views.size() < kMinViews) return too_few(views.size());
   LensFit fit;
   fit.intrinsics.width = width;
   fit.intrinsics.height = height;
   for (std::size_t i = 0; i < views.size(); ++i) fit.used.push_back(i);
   do {
-    if (fit.used.size() < options.min_views) return too_few(fit.used.size());
-    if (Status status = solve(board, views, options.lens, &fit); !status) return status;
+    if (fit.used.size() < kMinViews) return too_few(fit.used.size());
+    if (Status status = solve(board, views, lens, &fit); !status) return status;
     measure(board, views, &fit);
-  } while (drop_worst(options, views.size(), &fit));
-  if (Status status = check_determined(fit, options); !status) return status;
+  } while (drop_worst(views.size(), &fit));
+  if (Status status = check_determined(fit); !status) return status;
   return fit;
 }
 
@@ -252,12 +253,6 @@ std::vector<Eigen::Vector2d> reprojection_errors(const Board& board, const Board
     errors.push_back(corners.pixels[i] - intrinsics.project(T_camera_board * Eigen::Vector3d(p.x(), p.y(), 0)));
   }
   return errors;
-}
-
-double rms(std::span<const Eigen::Vector2d> errors) {
-  double sum = 0;
-  for (const Eigen::Vector2d& error : errors) sum += error.squaredNorm();
-  return errors.empty() ? 0 : std::sqrt(sum / static_cast<double>(errors.size()));
 }
 
 }  // namespace camloc::camera_tool

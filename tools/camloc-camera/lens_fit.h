@@ -9,7 +9,6 @@
 #include <array>
 #include <cstddef>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/base/frame.h"
@@ -26,15 +25,6 @@ struct BoardView {
   Image<std::uint16_t> depth;
 };
 
-struct LensFitOptions {
-  LensModel lens = LensModel::kBrownConrady;  ///< kPinhole: without distortion
-  std::size_t min_views = 8;
-  double max_view_ratio = 2.5;    ///< a view with more than so many times the median error, and half a pixel, is dropped
-  double max_dropped = 0.25;      ///< of the views; more than that is no matter of single views
-  double min_tilt_rad = 0.17;     ///< some view must show the board at such an angle, else focal length and distance are one
-  double max_focal_sigma = 0.01;  ///< relative; above it the answer is not worth writing
-};
-
 struct LensFit {
   Intrinsics intrinsics;
   std::array<double, 4> sigma{};             ///< of fx fy cx cy, pixels
@@ -46,9 +36,10 @@ struct LensFit {
   std::vector<Rigid3> T_camera_board;        ///< as `used`
 };
 
-/// Errors: kInvalid with what to do: too few views, all of them from the front, focal length not determined.
+/// `lens`: kPinhole is without distortion. Errors: kInvalid with what to do: too few views, all of them from the front, focal length not
+/// determined.
 [[nodiscard]] Result<LensFit> fit_lens(const Board& board, std::span<const BoardView> views, int width, int height,
-                                       const LensFitOptions& options = {});
+                                       LensModel lens = LensModel::kBrownConrady);
 
 /// The board's pose by its corners; kInvalid where they do not give one.
 [[nodiscard]] Result<Rigid3> find_board(const Board& board, const BoardCorners& corners, const Intrinsics& intrinsics);
@@ -56,7 +47,5 @@ struct LensFit {
 /// Distances of the corners from where the pose puts them, pixels: measured minus predicted.
 [[nodiscard]] std::vector<Eigen::Vector2d> reprojection_errors(const Board& board, const BoardCorners& corners,
                                                                const Intrinsics& intrinsics, const Rigid3& T_camera_board);
-/// Root of the mean squared length, 0 for none.
-[[nodiscard]] double rms(std::span<const Eigen::Vector2d> errors);
 
 }  // namespace camloc::camera_tool

@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/camloc-camera/view_selection.h"
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
+
+#include "tools/camloc-camera/calibration.h"
 
 namespace camloc::camera_tool {
 namespace {
@@ -21,12 +20,8 @@ struct Stand {
 };
 
 std::optional<Stand> stand_of(const Board& board, const BoardCorners& corners, int width, int height) {
-  Intrinsics typical;
-  typical.width = width;
-  typical.height = height;
-  typical.fx = typical.fy = 0.85 * width;
-  typical.cx = 0.5 * (width - 1);
-  typical.cy = 0.5 * (height - 1);
+  const double focal_px = 0.85 * width;
+  const Intrinsics typical{width, height, focal_px, focal_px, 0.5 * (width - 1), 0.5 * (height - 1)};
   const Result<Rigid3> T_camera_board = find_board(board, corners, typical);
   if (!T_camera_board) return std::nullopt;
   Eigen::Vector3d normal = T_camera_board->rotation * Eigen::Vector3d::UnitZ();
@@ -112,12 +107,10 @@ std::string CoverageGrid::bare_sides() const {
   for (int row = 0; row < kRows; ++row) left += is_covered(0, row), right += is_covered(kColumns - 1, row);
   for (int column = 0; column < kColumns; ++column) top += is_covered(column, 0), bottom += is_covered(column, kRows - 1);
   std::string text;
-  const struct {
-    const char* name;
-    bool is_bare;
-  } sides[] = {{"left", 2 * left < kRows}, {"right", 2 * right < kRows}, {"top", 2 * top < kColumns}, {"bottom", 2 * bottom < kColumns}};
-  for (const auto& side : sides) {
-    if (side.is_bare) text += std::string(text.empty() ? "" : ", ") + "the " + side.name;
+  const std::pair<const char*, bool> sides[] = {
+      {"left", 2 * left < kRows}, {"right", 2 * right < kRows}, {"top", 2 * top < kColumns}, {"bottom", 2 * bottom < kColumns}};
+  for (const auto& [name, is_bare] : sides) {
+    if (is_bare) text += std::string(text.empty() ? "" : ", ") + "the " + name;
   }
   return text;
 }
