@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// `camloc bench slam`: the map of a walk without poses, with SLAM's numbers as they are and as --set changes them, side by side.
+// `camloc bench slam`: the map of a recording without poses, with SLAM's numbers as they are and as --set changes them, side by side.
 // It is `camloc map build` that is run, so that what is compared is what users get.
 #include <unistd.h>
 
@@ -15,13 +15,13 @@
 #include "tools/camloc-bench/commands.h"
 #include "tools/common/command_line.h"
 #include "tools/common/terminal_observer.h"
-#include "tools/evaluation/recorded_poses.h"
 #include "tools/evaluation/trajectory_error.h"
 #include "tools/mapping/build/map_pipeline.h"
 
 namespace camloc::bench {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kPrefix = "slam.";
@@ -41,31 +41,23 @@ struct SlamRun {
   std::optional<tools::TrajectoryErrors> errors;
 };
 
-/// A folder that is gone with its owner, unless it was asked for.
-struct WorkFolder {
-  std::filesystem::path path;
-  bool is_kept = false;
-  WorkFolder() = default;
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-  ~WorkFolder() {
-    std::error_code ignored;
-    if (!is_kept && !path.empty()) std::filesystem::remove_all(path, ignored);
-  }
-};
-
-Status open_folder(const std::string& wanted, WorkFolder* folder) {
+/// The folder that is wanted, which stays, or one that is gone with its last owner.
+Result<std::shared_ptr<const fs::path>> open_folder(const std::string& wanted) {
   std::error_code error;
-  folder->is_kept = !wanted.empty();
-  if (folder->is_kept) {
-    folder->path = wanted;
-    std::filesystem::create_directories(folder->path, error);
+  if (!wanted.empty()) {
+    fs::create_directories(wanted, error);
+    if (!error) return std::make_shared<const fs::path>(wanted);
   } else {
-    std::string name = (std::filesystem::temp_directory_path(error) / "camloc-bench-XXXXXX").string();
+    std::string name = (fs::temp_directory_path(error) / "camloc-bench-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr) error = std::error_code(errno, std::generic_category());
-    if (!error) folder->path = name;
+    const auto remove = [](const fs::path* path) {
+      std::error_code ignored;
+      fs::remove_all(*path, ignored);
+      delete path;
+    };
+    if (!error) return std::shared_ptr<const fs::path>(new fs::path(name), remove);
   }
-  return error ? Status(ErrorCode::kIo, wanted + ": cannot make the folder: " + error.message()) : Status::ok();
+  return Status(ErrorCode::kIo, wanted + ": cannot make the folder: " + error.message());
 }
 
 Result<SlamNumbers> changed_numbers(const std::vector<std::string>& settings) {
@@ -82,33 +74,24 @@ Result<SlamNumbers> changed_numbers(const std::vector<std::string>& settings) {
 Result<std::vector<StampedPose>> read_reference(const SlamArguments& arguments) {
   const bool is_given = !arguments.reference_path.empty();
   const std::string path = is_given ? arguments.reference_path : arguments.request.frames.sequence;
-  if (std::filesystem::is_regular_file(path)) return read_tum_trajectory(path);
-  const RgbdCamera& camera = arguments.request.camera;
-  auto recorded =
-      tools::read_recorded_poses(path, "", camera.poses_are_of_depth_camera ? std::optional(camera.T_color_depth) : std::nullopt);
+  auto recorded = tools::read_recorded_poses(path, "", tools::depth_camera_offset(arguments.request.camera));
   if (recorded.is_ok()) return std::move(recorded->poses);
   if (is_given) return recorded.status();
   return std::vector<StampedPose>();
 }
 
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-Result<SlamRun> build(const SlamArguments& arguments, const std::string& name, const SlamNumbers& numbers,
-                      const std::filesystem::path& folder, const std::vector<StampedPose>& reference) {
+Result<SlamRun> build(const SlamArguments& arguments, const std::string& name, const SlamNumbers& numbers, const fs::path& folder,
+                      const std::vector<StampedPose>& reference) {
   mapping::BuildRequest request = arguments.request;
   request.slam.numbers = numbers;
   request.map_path = (folder / (name + ".cmap")).string();
   request.trajectory_path = (folder / (name + ".tum")).string();
   SlamRun run;
   run.name = name;
-  const double before_s = cpu_seconds();
+  const std::clock_t started = std::clock();
   tools::TerminalObserver observer;
   if (const Status built = mapping::build_map(request, observer, &run.summary); !built.is_ok()) return built;
-  run.cpu_s = cpu_seconds() - before_s;
+  run.cpu_s = static_cast<double>(std::clock() - started) / CLOCKS_PER_SEC;
   if (reference.empty()) return run;
   const auto trajectory = tools::read_trajectory(request.trajectory_path);
   if (!trajectory.is_ok()) return trajectory.status();
@@ -159,13 +142,13 @@ Status run(SlamArguments& arguments) {
   if (!changed.is_ok()) return changed.status();
   const auto reference = read_reference(arguments);
   if (!reference.is_ok()) return reference.status();
-  WorkFolder folder;
-  if (const Status opened = open_folder(arguments.folder, &folder); !opened.is_ok()) return opened;
+  const auto folder = open_folder(arguments.folder);
+  if (!folder.is_ok()) return folder.status();
   std::vector<std::pair<std::string, SlamNumbers>> contestants{{"default", SlamNumbers()}};
   if (!arguments.settings.empty()) contestants.emplace_back("changed", *changed);
   std::vector<SlamRun> runs;
   for (const auto& [name, numbers] : contestants) {
-    auto built = build(arguments, name, numbers, folder.path, *reference);
+    auto built = build(arguments, name, numbers, **folder, *reference);
     if (!built.is_ok()) return built.status();
     runs.push_back(std::move(built).value());
   }

@@ -9,25 +9,27 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
+#include <span>
 
-#include "core/io/sequence.h"
 #include "core/map/mapping_guard.h"
-#include "drivers/frame_source.h"
 #include "drivers/source_url.h"
 #include "tools/camloc-bench/commands.h"
 #include "tools/camloc-bench/opencv_reference.h"
 #include "tools/common/command_line.h"
+#include "tools/common/text_format.h"
 #include "tools/evaluation/sequence_run.h"
 #include "tools/evaluation/trajectory_error.h"
 
+namespace camloc::bench {
 namespace {
 
-using camloc::tools::EstimatedTrajectory;
-using camloc::tools::TrajectoryErrors;
+using tools::EstimatedTrajectory;
+using tools::llu;
+using tools::TrajectoryErrors;
 using Json = nlohmann::ordered_json;
 
 struct BenchArguments {
-  camloc::tools::SequenceRunOptions run;
+  tools::SequenceRunOptions run;
   std::string mode = "track";
   std::string clock = "wall";
   bool has_reference = false;
@@ -46,7 +48,6 @@ struct Samples {
   std::string name;
   std::vector<double> ms;
 
-  void add(std::int64_t ns) { ms.push_back(1e-6 * static_cast<double>(ns)); }
   [[nodiscard]] double percentile(double fraction) const {
     if (ms.empty()) return 0;
     std::vector<double> sorted = ms;
@@ -61,44 +62,21 @@ struct Contestant {
   std::vector<Samples> stages;
   EstimatedTrajectory trajectory;
   std::optional<TrajectoryErrors> errors;
+
+  Contestant(const char* contestant, std::initializer_list<const char*> stage_names) : name(contestant) {
+    for (const char* stage : stage_names) stages.push_back({stage, {}});
+  }
+  void add_times(std::span<const std::int64_t> stage_ns) {
+    for (std::size_t i = 0; i < stages.size(); ++i) stages[i].ms.push_back(1e-6 * static_cast<double>(stage_ns[i]));
+  }
 };
 
 /// Poses recorded with the sequence, as the colour camera's; empty where there are none.
-std::vector<camloc::StampedPose> recorded_poses(const BenchArguments& arguments, const camloc::RgbdCamera& camera) {
-  std::vector<camloc::StampedPose> out;
-  const auto url = camloc::parse_source_url(arguments.run.sequence_url);
-  if (!url || url->scheme != "replay") return out;
-  const auto sequence = camloc::read_sequence(url->path);
-  if (!sequence) return out;
-  const auto poses = camloc::read_embedded_poses(*sequence);
-  if (!poses) return out;
-  for (std::size_t i = 0; i < poses->size(); ++i) {
-    if (!(*poses)[i]) continue;
-    const camloc::Rigid3 T = camera.poses_are_of_depth_camera ? *(*poses)[i] * camera.T_color_depth.inverse() : *(*poses)[i];
-    out.push_back({sequence->frames[i].stamp_ns, T});
-  }
-  return out;
-}
-
-Contestant new_contestant(const std::string& name, const std::vector<std::string>& stages) {
-  Contestant contestant{.name = name, .stages = {}, .trajectory = {}, .errors = {}};
-  for (const std::string& stage : stages) contestant.stages.push_back({stage, {}});
-  return contestant;
-}
-
-void record(const camloc::Localization& result, Contestant* contestant) {
-  for (int i = 0; i < camloc::kNumStages; ++i)
-    contestant->stages[static_cast<std::size_t>(i)].add(result.stage_ns[static_cast<std::size_t>(i)]);
-  if (result.state == camloc::State::kLocalized)
-    contestant->trajectory.poses.push_back({result.stamp_ns, result.T_map_camera, result.covariance});
-}
-
-void record(const camloc::bench::ReferenceResult& result, std::int64_t stamp_ns, Contestant* contestant) {
-  contestant->stages[0].add(result.extract_ns);
-  contestant->stages[1].add(result.match_ns);
-  contestant->stages[2].add(result.estimate_ns);
-  contestant->stages[3].add(result.total_ns());
-  if (result.T_map_camera) contestant->trajectory.poses.push_back({stamp_ns, *result.T_map_camera, std::nullopt});
+std::vector<StampedPose> recorded_poses(const BenchArguments& arguments, const RgbdCamera& camera) {
+  const auto url = parse_source_url(arguments.run.sequence_url);
+  if (!url || url->scheme != "replay") return {};
+  auto recorded = tools::read_recorded_poses(url->path, "", tools::depth_camera_offset(camera));
+  return recorded ? std::move(recorded->poses) : std::vector<StampedPose>();
 }
 
 /// Median over the frames of reference time / our time: robust when the machine's speed drifts during the run.
@@ -111,8 +89,7 @@ double median_ratio(const Contestant& ours, const Contestant& reference) {
 }
 
 void print_table(const std::vector<Contestant>& contestants, std::uint64_t num_frames, const BenchArguments& arguments) {
-  std::printf("%llu frames, mode %s, %s time, milliseconds\n", static_cast<unsigned long long>(num_frames), arguments.mode.c_str(),
-              arguments.clock.c_str());
+  std::printf("%llu frames, mode %s, %s time, milliseconds\n", llu(num_frames), arguments.mode.c_str(), arguments.clock.c_str());
   for (const Contestant& contestant : contestants) {
     std::printf("\n%-22s %8s %8s %8s\n", contestant.name.c_str(), "p50", "p95", "p99");
     for (const Samples& stage : contestant.stages) {
@@ -122,8 +99,7 @@ void print_table(const std::vector<Contestant>& contestants, std::uint64_t num_f
     if (contestant.errors) {
       const TrajectoryErrors& e = *contestant.errors;
       std::printf(", median %.2f cm / %.2f deg, p90 %.2f cm, within 5cm/5deg %.1f %%, misleading %llu", 100 * e.translation_m.median,
-                  e.rotation_deg.median, 100 * e.translation_m.p90, 100 * e.share_within[1],
-                  static_cast<unsigned long long>(e.num_misleading));
+                  e.rotation_deg.median, 100 * e.translation_m.p90, 100 * e.share_within[1], llu(e.num_misleading));
     }
     std::printf("\n");
   }
@@ -153,52 +129,55 @@ void print_json(const std::vector<Contestant>& contestants, std::uint64_t num_fr
   std::printf("%s\n", json.dump(1).c_str());
 }
 
-camloc::Status bench(const BenchArguments& arguments) {
-  const camloc::StageTimer::Clock clock = arguments.clock == "cpu" ? thread_cpu_ns : camloc::tools::monotonic_ns;
+Status bench(const BenchArguments& arguments) {
+  const StageTimer::Clock clock = arguments.clock == "cpu" ? thread_cpu_ns : tools::monotonic_ns;
   std::vector<Contestant> contestants;
-  contestants.push_back(new_contestant("camloc", {"extract", "candidates", "match", "estimate", "verify", "total"}));
-  if (arguments.has_reference)
-    contestants.push_back(new_contestant("opencv", {"extract (cv::ORB)", "match (BFMatcher)", "estimate (PnP)", "total"}));
+  contestants.push_back({"camloc", {"extract", "candidates", "match", "estimate", "verify", "total"}});
+  if (arguments.has_reference) contestants.push_back({"opencv", {"extract (cv::ORB)", "match (BFMatcher)", "estimate (PnP)", "total"}});
 
-  camloc::tools::SequenceRunOptions run_options = arguments.run;
+  tools::SequenceRunOptions run_options = arguments.run;
   run_options.clock = clock;
   std::uint64_t num_frames = 0;
-  std::vector<camloc::StampedPose> truth;
+  std::vector<StampedPose> truth;
   for (int pass = 0; pass < arguments.repeat; ++pass) {
-    auto run = camloc::tools::open_sequence_run(run_options);
+    auto run = tools::open_sequence_run(run_options);
     if (!run) return run.status();
-    camloc::Localizer& localizer = *run->localizer;
-    camloc::bench::ReferenceOptions reference_options;
-    reference_options.is_tracking = !arguments.run.is_single;
-    camloc::bench::OpencvReference reference(*run->map, run->camera, reference_options, clock);
-    const auto counts = camloc::tools::read_perturbed_frames(*run, [&](const camloc::Frame& frame) {
-      record(localizer.process(frame), &contestants[0]);
-      if (arguments.has_reference) record(reference.process(frame), frame.stamp_ns, &contestants[1]);
+    Localizer& localizer = *run->localizer;
+    OpencvReference reference(*run->map, run->camera, !arguments.run.is_single, clock);
+    const auto counts = tools::read_perturbed_frames(*run, [&](const Frame& frame) {
+      const Localization ours = localizer.process(frame);
+      contestants[0].add_times(ours.stage_ns);
+      if (ours.state == State::kLocalized) contestants[0].trajectory.poses.push_back({ours.stamp_ns, ours.T_map_camera, ours.covariance});
+      if (!arguments.has_reference) return;
+      const ReferenceResult theirs = reference.process(frame);
+      contestants[1].add_times(theirs.stage_ns);
+      if (theirs.T_map_camera) contestants[1].trajectory.poses.push_back({frame.stamp_ns, *theirs.T_map_camera, std::nullopt});
     });
     if (!counts) return counts.status();
-    if (pass == 0) camloc::tools::warn_of_corrupt_frames("camloc bench", *counts);
+    if (pass == 0) tools::warn_of_corrupt_frames("camloc bench", *counts);
     num_frames += counts->num_frames;
     if (pass == 0) truth = recorded_poses(arguments, run->camera);
   }
   if (!truth.empty()) {
     for (Contestant& contestant : contestants) {
-      contestant.errors = camloc::tools::compare(
-          contestant.trajectory, [&](std::int64_t stamp_ns) { return camloc::pose_at(truth, stamp_ns); }, num_frames);
+      contestant.errors = tools::compare(
+          contestant.trajectory, [&](std::int64_t stamp_ns) { return pose_at(truth, stamp_ns); }, num_frames);
     }
   }
   if (arguments.is_json)
     print_json(contestants, num_frames, arguments);
   else
     print_table(contestants, num_frames, arguments);
-  return camloc::Status::ok();
+  return Status::ok();
 }
 
 }  // namespace
+}  // namespace camloc::bench
 
 int main(int argc, char** argv) {
   camloc::install_mapping_guard();
   cv::setNumThreads(1);
-  BenchArguments arguments;
+  camloc::bench::BenchArguments arguments;
   CLI::App app("Time and accuracy of localization, stage by stage", "camloc bench");
   app.add_option("--map", arguments.run.map_path, "Map (.cmap)")->required();
   app.add_option("--sequence", arguments.run.sequence_url, "Folder or URL of the recording")->required();
@@ -228,5 +207,5 @@ int main(int argc, char** argv) {
   if (const int usage = camloc::tools::parse_command_line(app, argc, argv, &is_over); is_over) return usage;
   if (slam->parsed()) return exit_code;
   arguments.run.is_single = arguments.mode == "single";
-  return camloc::tools::report("camloc", bench(arguments));
+  return camloc::tools::report("camloc", camloc::bench::bench(arguments));
 }

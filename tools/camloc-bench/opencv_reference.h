@@ -6,40 +6,45 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
+#include <opencv2/features2d.hpp>
 #include <optional>
 
 #include "core/base/frame.h"
 #include "core/base/stage_timer.h"
 #include "core/geometry/camera.h"
+#include "core/map/map_landmarks.h"
 #include "core/map/map_view.h"
 
 namespace camloc::bench {
 
-struct ReferenceOptions {
-  int num_features = 1000;
-  int ransac_iterations = 600;
-  double max_error_px = 5.0;
-  double max_ratio = 0.8;
-  std::size_t min_inliers = 15;
-  bool is_tracking = false;  ///< match only landmarks in view from its last pose, else all landmarks of the map
-};
-
 struct ReferenceResult {
   std::optional<Rigid3> T_map_camera;
-  std::int64_t extract_ns = 0, match_ns = 0, estimate_ns = 0;
-  [[nodiscard]] std::int64_t total_ns() const { return extract_ns + match_ns + estimate_ns; }
+  std::array<std::int64_t, 4> stage_ns{};  ///< extract, match, estimate, total
 };
 
 class OpencvReference {
  public:
-  OpencvReference(const MapView& map, const RgbdCamera& camera, const ReferenceOptions& options, StageTimer::Clock now_ns);
-  ~OpencvReference();
+  /// `is_tracking`: match only landmarks in view from its last pose, else all landmarks of the map.
+  OpencvReference(const MapView& map, const RgbdCamera& camera, bool is_tracking, StageTimer::Clock now_ns);
   [[nodiscard]] ReferenceResult process(const Frame& frame);
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  /// Landmarks of the map by the rows of their descriptors.
+  struct Descriptors {
+    cv::Mat rows;
+    std::vector<std::uint32_t> landmarks;
+  };
+  void add(std::uint32_t landmark, Descriptors* descriptors) const;
+
+  const MapView& map_;
+  bool is_tracking_;
+  StageTimer::Clock now_ns_;
+  cv::Ptr<cv::ORB> orb_;
+  cv::BFMatcher matcher_;
+  MapLandmarks landmarks_;
+  cv::Mat K_, distortion_;
+  Descriptors all_, local_;
+  std::optional<Rigid3> last_;
 };
 
 }  // namespace camloc::bench

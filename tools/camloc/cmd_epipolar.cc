@@ -17,7 +17,7 @@
 #include "tools/common/terminal_observer.h"
 #include "tools/common/trajectory_file.h"
 #include "tools/evaluation/epipolar_error.h"
-#include "tools/evaluation/recorded_poses.h"
+#include "tools/evaluation/trajectory_error.h"
 
 namespace camloc::tools {
 namespace {
@@ -29,19 +29,18 @@ struct EpipolarArguments {
   bool is_json = false;
 };
 
-/// Views by their time of capture; those without features yet only have a pose.
-using Views = std::map<std::int64_t, FrameFeatures>;
+/// Frames by their time of capture; those without features yet only have a pose.
+using Frames = std::map<std::int64_t, FrameFeatures>;
 
-struct ViewPair {
+struct FramePair {
   std::int64_t estimated_ns, mapped_ns;
 };
 
 /// What the poses are compared with: a file, the poses of a recording, or the estimate itself.
 Result<EstimatedTrajectory> read_mapped(const EpipolarArguments& arguments, const RgbdCamera& camera) {
-  if (arguments.mapped_path.empty()) return read_trajectory(arguments.estimate_path);
-  if (!std::filesystem::is_directory(arguments.mapped_path)) return read_trajectory(arguments.mapped_path);
-  auto recorded = read_recorded_poses(arguments.mapped_path, arguments.mapped_frames,
-                                      camera.poses_are_of_depth_camera ? std::optional(camera.T_color_depth) : std::nullopt);
+  const std::string& path = arguments.mapped_path.empty() ? arguments.estimate_path : arguments.mapped_path;
+  if (!std::filesystem::is_directory(path)) return read_trajectory(path);
+  auto recorded = read_recorded_poses(arguments.mapped_path, arguments.mapped_frames, depth_camera_offset(camera));
   if (!recorded) return recorded.status();
   EstimatedTrajectory trajectory;
   for (const StampedPose& pose : recorded->poses) trajectory.poses.push_back({pose.stamp_ns, pose.T_world_camera, std::nullopt});
@@ -49,12 +48,12 @@ Result<EstimatedTrajectory> read_mapped(const EpipolarArguments& arguments, cons
 }
 
 /// Each pose of the estimate with the mapped ones that see most of the same.
-std::vector<ViewPair> pair_views(const EstimatedTrajectory& estimate, const EstimatedTrajectory& mapped,
-                                 const EpipolarArguments& arguments) {
+std::vector<FramePair> pair_frames(const EstimatedTrajectory& estimate, const EstimatedTrajectory& mapped,
+                                   const EpipolarArguments& arguments) {
   const auto min_gap_ns = static_cast<std::int64_t>(1e9 * arguments.min_gap_s);
   std::vector<Rigid3> poses;
   for (const EstimatedPose& pose : mapped.poses) poses.push_back(pose.T_map_camera);
-  std::vector<ViewPair> pairs;
+  std::vector<FramePair> pairs;
   std::vector<bool> is_excluded(poses.size());
   for (const EstimatedPose& pose : estimate.poses) {
     for (std::size_t i = 0; i < poses.size(); ++i) is_excluded[i] = std::abs(mapped.poses[i].stamp_ns - pose.stamp_ns) < min_gap_ns;
@@ -65,20 +64,20 @@ std::vector<ViewPair> pair_views(const EstimatedTrajectory& estimate, const Esti
   return pairs;
 }
 
-void add_poses(const EstimatedTrajectory& trajectory, Views* views) {
+void add_poses(const EstimatedTrajectory& trajectory, Frames* frames) {
   for (const EstimatedPose& pose : trajectory.poses) {
-    FrameFeatures& view = (*views)[pose.stamp_ns];
-    view.stamp_ns = pose.stamp_ns;
-    view.T_map_camera = pose.T_map_camera;
+    FrameFeatures& features = (*frames)[pose.stamp_ns];
+    features.stamp_ns = pose.stamp_ns;
+    features.T_map_camera = pose.T_map_camera;
   }
 }
 
 /// The frames of the recording that a pair needs, as a selection; kInvalid where a pose is of no frame.
-Result<std::string> frames_of(const std::vector<ViewPair>& pairs, const EpipolarArguments& arguments) {
+Result<std::string> frames_of(const std::vector<FramePair>& pairs, const EpipolarArguments& arguments) {
   auto sequence = read_sequence(arguments.sequence_path);
   if (!sequence) return sequence.status();
   std::set<std::int64_t> wanted_ns;
-  for (const ViewPair& pair : pairs) wanted_ns.insert({pair.estimated_ns, pair.mapped_ns});
+  for (const FramePair& pair : pairs) wanted_ns.insert({pair.estimated_ns, pair.mapped_ns});
   const std::size_t num_wanted = wanted_ns.size();
   std::set<std::uint64_t> frames;
   for (std::size_t i = 0; i < sequence->frames.size(); ++i) {
@@ -90,7 +89,7 @@ Result<std::string> frames_of(const std::vector<ViewPair>& pairs, const Epipolar
 }
 
 Status extract_features(const std::string& selection, const EpipolarArguments& arguments, const RgbdCamera& camera, const OrbOptions& orb,
-                        Views* views) {
+                        Frames* frames) {
   auto source = open_frame_source(with_selection(arguments.sequence_path, selection));
   if (!source) return source.status();
   FrameExtractor extractor(camera, orb);
@@ -100,10 +99,10 @@ Status extract_features(const std::string& selection, const EpipolarArguments& a
   const auto extract = [&](FrameBuffer& buffer) {
     const Frame frame = buffer.view();
     if (Status check = extractor.check(frame); !check) return check;
-    FrameFeatures& view = (*views)[frame.stamp_ns];
-    const Rigid3 T_map_camera = view.T_map_camera;
-    extractor.extract(frame, &view);
-    view.T_map_camera = T_map_camera;
+    FrameFeatures& features = (*frames)[frame.stamp_ns];
+    const Rigid3 T_map_camera = features.T_map_camera;
+    extractor.extract(frame, &features);
+    features.T_map_camera = T_map_camera;
     observer.show("frame", ++num_read, num_frames, "");
     return Status::ok();
   };
@@ -118,12 +117,12 @@ struct Agreement {
   double median_px = 0, p90_px = 0;          ///< of the pairs' medians
 };
 
-Agreement measure(const std::vector<ViewPair>& pairs, const Views& views, EpipolarMeter* meter) {
+Agreement measure(const std::vector<FramePair>& pairs, const Frames& frames, EpipolarMeter* meter) {
   std::vector<double> errors_px;
   Agreement agreement;
   std::int64_t last_ns = -1;
-  for (const ViewPair& pair : pairs) {
-    const auto error = meter->measure(views.at(pair.mapped_ns), views.at(pair.estimated_ns));
+  for (const FramePair& pair : pairs) {
+    const auto error = meter->measure(frames.at(pair.mapped_ns), frames.at(pair.estimated_ns));
     if (!error) continue;
     errors_px.push_back(error->median_px);
     if (pair.estimated_ns != last_ns) ++agreement.num_poses;
@@ -161,18 +160,18 @@ Status epipolar(const EpipolarArguments& arguments) {
   if (!estimate) return estimate.status();
   auto mapped = read_mapped(arguments, *camera);
   if (!mapped) return mapped.status();
-  const std::vector<ViewPair> pairs = pair_views(*estimate, *mapped, arguments);
+  const std::vector<FramePair> pairs = pair_frames(*estimate, *mapped, arguments);
   if (pairs.empty()) return nothing_in_common(arguments);
   const auto selection = frames_of(pairs, arguments);
   if (!selection) return selection.status();
 
-  Views views;
-  add_poses(*mapped, &views);
-  add_poses(*estimate, &views);
+  Frames frames;
+  add_poses(*mapped, &frames);
+  add_poses(*estimate, &frames);
   const OrbOptions orb;
-  if (Status status = extract_features(selection.value(), arguments, *camera, orb, &views); !status) return status;
+  if (Status status = extract_features(selection.value(), arguments, *camera, orb, &frames); !status) return status;
   EpipolarMeter meter(camera->color, orb);
-  const Agreement agreement = measure(pairs, views, &meter);
+  const Agreement agreement = measure(pairs, frames, &meter);
   if (agreement.num_pairs == 0) return nothing_in_common(arguments);
   print(agreement, estimate->poses.size(), arguments.is_json);
   return Status::ok();

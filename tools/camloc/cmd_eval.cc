@@ -13,7 +13,6 @@
 #include "tools/camloc/commands.h"
 #include "tools/common/command_line.h"
 #include "tools/common/text_format.h"
-#include "tools/evaluation/recorded_poses.h"
 #include "tools/evaluation/top_view.h"
 #include "tools/evaluation/trajectory_error.h"
 
@@ -29,17 +28,11 @@ struct EvalArguments {
 
 Result<RecordedPoses> read_reference(const EvalArguments& arguments, const std::string& path, const std::string& frames,
                                      const EstimatedTrajectory& estimate) {
-  if (!std::filesystem::is_directory(path)) {
-    auto poses = read_tum_trajectory(path);
-    if (!poses) return poses.status();
-    const std::uint64_t count = poses->size();
-    return RecordedPoses{std::move(poses).value(), count};
-  }
   std::optional<Rigid3> T_color_depth = estimate.T_color_depth;
-  if (!arguments.camera_path.empty()) {
+  if (!arguments.camera_path.empty() && std::filesystem::is_directory(path)) {
     auto camera = read_camera_file(arguments.camera_path);
     if (!camera) return camera.status();
-    T_color_depth = camera->poses_are_of_depth_camera ? std::optional(camera->T_color_depth) : std::nullopt;
+    T_color_depth = depth_camera_offset(*camera);
   }
   return read_recorded_poses(path, frames, T_color_depth);
 }

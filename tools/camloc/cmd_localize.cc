@@ -121,17 +121,13 @@ Status localize(const LocalizeArguments& arguments) {
 
   RunLog log;
   TerminalObserver observer;
-  const auto counts = [&] {
-    const std::uint64_t num_frames = run->source->info().num_frames.value_or(0);
-    std::uint64_t num_done = 0;
-    return read_perturbed_frames(
-        *run,
-        [&](const Frame& frame) {
-          log.add(run->localizer->process(frame), !arguments.json_path.empty());
-          observer.show("frame", ++num_done, num_frames, std::to_string(log.trajectory.poses.size()) + " localized");
-        },
-        observer);
-  }();
+  const std::uint64_t num_frames = run->source->info().num_frames.value_or(0);
+  std::uint64_t num_done = 0;
+  const auto process = [&](const Frame& frame) {
+    log.add(run->localizer->process(frame), !arguments.json_path.empty());
+    observer.show("frame", ++num_done, num_frames, std::to_string(log.trajectory.poses.size()) + " localized");
+  };
+  const auto counts = read_perturbed_frames(*run, process, observer);
   observer.show("", 0, 0, "");  // the summary takes its place
   if (!counts) return counts.status();
   if (Status status = write_results(arguments, *run, *counts, &log); !status) return status;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/base/order_statistics.h"
 
@@ -15,27 +14,14 @@ constexpr double kMetresPerRadian = 2.0;
 constexpr int kMinInliers = 40;      // matches that one rigid motion explains; with fewer, two images say nothing
 constexpr double kMaxErrorPx = 3.0;  // of the motion that is found from the matches alone
 
-CandidateMatcherOptions matcher_options() {
-  CandidateMatcherOptions options;
-  options.max_distance = 50;
-  return options;
-}
-
-PnpRansacOptions ransac_options(int max_pairs) {
-  PnpRansacOptions ransac;
-  ransac.max_error_px = kMaxErrorPx;
-  ransac.max_pairs = max_pairs;
-  return ransac;
-}
-
 }  // namespace
 
 EpipolarMeter::EpipolarMeter(const Intrinsics& color, const OrbOptions& orb)
     : focal_px_(color.mean_focal_px()),
       candidates_(static_cast<std::size_t>(orb.num_features)),
-      matcher_(matcher_options(), orb.num_features, static_cast<std::size_t>(orb.num_features)),
+      matcher_({.max_distance = 50}, orb.num_features, static_cast<std::size_t>(orb.num_features)),
       pairs_(static_cast<std::size_t>(orb.num_features)),
-      ransac_(ransac_options(orb.num_features)) {}
+      ransac_({.max_error_px = kMaxErrorPx, .max_pairs = orb.num_features}) {}
 
 std::optional<EpipolarError> EpipolarMeter::measure(const FrameFeatures& a, const FrameFeatures& b) {
   candidates_.clear();
@@ -62,8 +48,7 @@ std::optional<EpipolarError> EpipolarMeter::measure(const FrameFeatures& a, cons
                           in_b = b.normalized[static_cast<std::size_t>(pairs_.feature[i])].cast<double>();
     errors_px.push_back(focal_px_ * sampson_distance(T_b_a, in_a, in_b));
   }
-  const int num_matches = static_cast<int>(errors_px.size());
-  return EpipolarError{num_matches, upper_median(std::move(errors_px))};
+  return EpipolarError{static_cast<int>(errors_px.size()), upper_median(errors_px)};
 }
 
 double sampson_distance(const Rigid3& T_b_a, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {

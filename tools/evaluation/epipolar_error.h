@@ -21,13 +21,13 @@ struct EpipolarError {
   double median_px = 0;  ///< Sampson distance under the given poses
 };
 
-/// Measures pairs of views. Not thread-safe.
+/// Measures pairs of frames. Not thread-safe.
 class EpipolarMeter {
  public:
   EpipolarMeter(const Intrinsics& color, const OrbOptions& orb);
 
   /// Which matches are right is decided by the images and the depth of `a` alone (P3P and RANSAC), so that the given poses
-  /// (T_map_camera of both views) are judged, never used. Nothing where the views share too little.
+  /// (T_map_camera of both frames) are judged, never used. Nothing where the frames share too little.
   [[nodiscard]] std::optional<EpipolarError> measure(const FrameFeatures& a, const FrameFeatures& b);
 
  private:
@@ -42,8 +42,8 @@ class EpipolarMeter {
 /// Hartley and Zisserman, "Multiple View Geometry", 2004, section 11.4.3), in normalized image coordinates.
 [[nodiscard]] double sampson_distance(const Rigid3& T_b_a, const Eigen::Vector2d& a, const Eigen::Vector2d& b);
 
-/// For a view at `T_map_camera`, the `count` of the `others` that look from the most similar place in the most similar direction
-/// (a turn by one radian counts like two metres), nearest first. Views that are `is_excluded` are passed over.
+/// For a frame at `T_map_camera`, the `count` of the `others` that look from the most similar place in the most similar direction
+/// (a turn by one radian counts like two metres), nearest first. Frames that are `is_excluded` are passed over.
 [[nodiscard]] std::vector<std::size_t> most_similar_views(const Rigid3& T_map_camera, const std::vector<Rigid3>& others,
                                                           const std::vector<bool>& is_excluded, std::size_t count);
 

@@ -14,9 +14,20 @@
 #include "core/map/map_view.h"
 #include "drivers/frame_source.h"
 #include "tools/common/frame_reading.h"
-#include "tools/evaluation/perturbation.h"
 
 namespace camloc::tools {
+
+/// One change of the grey image.
+struct Perturbation {
+  void (*change)(double value, std::uint64_t sequence, Image<std::uint8_t>* gray);
+  double value = 1;
+};
+
+/// "gamma=0.5": 255 (v / 255)^0.5; "contrast=0.6": 128 + 0.6 (v - 128); "exposure=0.4": 0.4 v; "noise=12": plus normal noise, sigma
+/// 12 grey levels, seeded by the frame number; "blur=9": mean over 9 pixels along the row, which is horizontal motion.
+[[nodiscard]] Result<Perturbation> parse_perturbation(const std::string& text);
+/// In the order given.
+void apply(const std::vector<Perturbation>& perturbations, std::uint64_t sequence, Image<std::uint8_t>* gray);
 
 struct SequenceRunOptions {
   std::string map_path;

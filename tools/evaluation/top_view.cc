@@ -3,7 +3,6 @@
 #include "tools/evaluation/top_view.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/base/order_statistics.h"
 #include "core/io/image_writer.h"
@@ -32,19 +31,15 @@ struct Projection {
   }
 };
 
-/// 1st and 99th percentile of a coordinate: a few far landmarks must not shrink the picture.
-std::pair<double, double> range_of(std::vector<double> values) {
-  if (values.empty()) return {0, 1};
-  return trimmed_range(std::move(values), 100);
-}
-
 Projection fit(const std::vector<Eigen::Vector3d>& landmarks, const std::vector<Rigid3>& truth, const std::vector<Rigid3>& estimate) {
-  std::array<std::pair<double, double>, 3> range;
+  std::pair<double, double> range[3];
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
     for (const auto& p : landmarks) values.push_back(p[axis]);
-    range[static_cast<std::size_t>(axis)] = range_of(std::move(values));
-    auto& [low, high] = range[static_cast<std::size_t>(axis)];
+    range[axis] = {0, 1};
+    auto& [low, high] = range[axis];
+    // From the 1st to the 99th percentile: a few far landmarks must not shrink the picture.
+    if (!values.empty()) range[axis] = trimmed_range(std::move(values), 100);
     for (const auto* poses : {&truth, &estimate}) {
       for (const Rigid3& pose : *poses) {
         low = std::min(low, pose.translation[axis]);
@@ -52,7 +47,7 @@ Projection fit(const std::vector<Eigen::Vector3d>& landmarks, const std::vector<
       }
     }
   }
-  const auto extent = [&](int axis) { return range[static_cast<std::size_t>(axis)].second - range[static_cast<std::size_t>(axis)].first; };
+  const auto extent = [&](int axis) { return range[axis].second - range[axis].first; };
   int flat = 0;
   for (int axis = 1; axis < 3; ++axis)
     if (extent(axis) < extent(flat)) flat = axis;
@@ -60,8 +55,8 @@ Projection fit(const std::vector<Eigen::Vector3d>& landmarks, const std::vector<
   projection.right = flat == 0 ? 1 : 0;
   projection.up = flat == 2 ? 1 : 2;
   if (extent(projection.up) > extent(projection.right)) std::swap(projection.right, projection.up);
-  projection.min_right = range[static_cast<std::size_t>(projection.right)].first;
-  projection.min_up = range[static_cast<std::size_t>(projection.up)].first;
+  projection.min_right = range[projection.right].first;
+  projection.min_up = range[projection.up].first;
   projection.px_per_m = (kWidthPx - 2 * kMargin) / std::max(0.1, extent(projection.right));
   projection.height_px = kHeader + kFooter + static_cast<int>(extent(projection.up) * projection.px_per_m) + 1;
   return projection;
@@ -77,16 +72,13 @@ void draw_scale_bar(ColorImage* canvas, const Projection& projection) {
 }
 
 void draw_legend(ColorImage* canvas) {
-  const struct {
-    const char* text;
-    Rgb color;
-  } entries[] = {{"landmark", kLandmark},    {"keyframe", kKeyframe}, {"truth", kTruth},
-                 {"estimate < 5 cm", kGood}, {"< 25 cm", kFair},      {"farther", kBad}};
+  const std::pair<const char*, Rgb> entries[] = {{"landmark", kLandmark},    {"keyframe", kKeyframe}, {"truth", kTruth},
+                                                 {"estimate < 5 cm", kGood}, {"< 25 cm", kFair},      {"farther", kBad}};
   int u = kMargin;
-  for (const auto& entry : entries) {
-    draw_disc(canvas, {u, 50}, 5.5, entry.color);
-    draw_text(canvas, u + 11, 55, entry.text, kTextPx, kInk);
-    u += 36 + text_width(entry.text, kTextPx);
+  for (const auto& [text, color] : entries) {
+    draw_disc(canvas, {u, 50}, 5.5, color);
+    draw_text(canvas, u + 11, 55, text, kTextPx, kInk);
+    u += 36 + text_width(text, kTextPx);
   }
 }
 
@@ -125,7 +117,7 @@ Status write_top_view(const TopView& view, const std::string& path) {
     }
   }
   for (std::size_t i = 1; i < view.truth.size(); ++i) {
-    // A line across a gap would show a walk that nobody made.
+    // A line across a gap would show a motion that nobody made.
     if ((view.truth[i].translation - view.truth[i - 1].translation).norm() > 1.0) continue;
     draw_line(&canvas, projection(view.truth[i - 1].translation), projection(view.truth[i].translation), kTruth, 2);
   }

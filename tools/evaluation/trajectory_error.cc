@@ -8,21 +8,19 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <numeric>
 
 #include "core/geometry/alignment.h"
+#include "core/io/frame_selection.h"
+#include "tools/common/text_format.h"
 
 namespace camloc::tools {
 namespace {
 
 /// 95 % point of the chi-square distribution with 6 degrees of freedom.
 constexpr double kChiSquare95 = 12.591587;
-
-struct Pair {
-  Rigid3 reference, estimate;
-  std::optional<Matrix6d> covariance;
-};
 
 double quantile(std::vector<double>& values, double fraction) {
   if (values.empty()) return 0;
@@ -45,12 +43,31 @@ ErrorStatistics statistics(std::vector<double> values) {
   return out;
 }
 
-double nees(const Pair& pair) {
-  const Vector6d error = pose_error(pair.reference, pair.estimate);
-  return error.dot(pair.covariance->ldlt().solve(error));
-}
-
 }  // namespace
+
+Result<RecordedPoses> read_recorded_poses(const std::string& path, const std::string& frames, const std::optional<Rigid3>& T_color_depth) {
+  if (!std::filesystem::is_directory(path)) {
+    auto poses = read_tum_trajectory(path);
+    if (!poses) return poses.status();
+    const std::uint64_t count = poses->size();
+    return RecordedPoses{std::move(poses).value(), count};
+  }
+  auto sequence = read_sequence(path);
+  if (!sequence) return sequence.status();
+  auto selected = select_frames(frames, "", sequence->frames.size());
+  if (!selected) return selected.status();
+  auto poses = read_embedded_poses(*sequence);
+  if (!poses) return poses.status();
+  RecordedPoses recorded;
+  recorded.num_frames = selected->size();
+  for (const std::size_t i : *selected) {
+    if (!(*poses)[i]) continue;
+    Rigid3 T_world_color = *(*poses)[i];
+    if (T_color_depth) T_world_color = T_world_color * T_color_depth->inverse();
+    recorded.poses.push_back({sequence->frames[i].stamp_ns, T_world_color});
+  }
+  return recorded;
+}
 
 Rigid3 align_by_positions(const EstimatedTrajectory& estimate, const ReferencePose& reference) {
   std::vector<PointPair> points;
@@ -81,26 +98,23 @@ TrajectoryErrors compare(const EstimatedTrajectory& estimate, const ReferencePos
   errors.num_localized = estimate.poses.size();
   errors.T_reference_estimate = T_reference_estimate;
   const Rigid3 T = T_reference_estimate.value_or(Rigid3{});
-  std::vector<Pair> pairs;
+  std::vector<double> translations, rotations, all_nees;
   for (const EstimatedPose& pose : estimate.poses) {
     const auto truth = reference(pose.stamp_ns);
     if (!truth) continue;
-    Pair& pair = pairs.emplace_back(Pair{*truth, T * pose.T_map_camera, pose.covariance});
-    if (pair.covariance) pair.covariance = rotate_covariance(T.rotation, *pair.covariance);
-  }
-  errors.num_compared = pairs.size();
-
-  std::vector<double> translations, rotations, all_nees;
-  for (const Pair& pair : pairs) {
-    const double translation_m = (pair.reference.translation - pair.estimate.translation).norm();
-    const double rotation_deg = rotation_distance_rad(pair.reference.rotation, pair.estimate.rotation) * 180.0 / std::numbers::pi;
+    ++errors.num_compared;
+    const Rigid3 estimated = T * pose.T_map_camera;
+    const double translation_m = (truth->translation - estimated.translation).norm();
+    const double rotation_deg = degrees(rotation_distance_rad(truth->rotation, estimated.rotation));
     translations.push_back(translation_m);
     rotations.push_back(rotation_deg);
     for (std::size_t i = 0; i < kErrorLimits.size(); ++i) {
       if (translation_m <= kErrorLimits[i].translation_m && rotation_deg <= kErrorLimits[i].rotation_deg) errors.share_within[i] += 1;
     }
-    if (is_misleading(pair.reference, pair.estimate)) ++errors.num_misleading;
-    if (pair.covariance) all_nees.push_back(nees(pair));
+    if (is_misleading(*truth, estimated)) ++errors.num_misleading;
+    if (!pose.covariance) continue;
+    const Vector6d error = pose_error(*truth, estimated);
+    all_nees.push_back(error.dot(rotate_covariance(T.rotation, *pose.covariance).ldlt().solve(error)));
   }
   for (double& share : errors.share_within) share = num_frames == 0 ? 0.0 : share / static_cast<double>(num_frames);
   errors.translation_m = statistics(translations);

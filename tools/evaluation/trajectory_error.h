@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// How far a trajectory is from a reference: error statistics, shares within the usual limits of all frames, misleading
+// Poses to compare with, and how far a trajectory is from them: error statistics, shares within the usual limits of all frames, misleading
 // poses, and whether the covariances were honest.
 #pragma once
 
@@ -9,12 +9,28 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <string>
 #include <vector>
 
+#include "core/geometry/camera.h"
+#include "core/io/sequence.h"
 #include "tools/common/trajectory_file.h"
 
 namespace camloc::tools {
+
+struct RecordedPoses {
+  std::vector<StampedPose> poses;  ///< T_world_camera of the colour camera, of the selected frames that have one
+  std::uint64_t num_frames = 0;    ///< selected ones, with and without a pose
+};
+
+/// RgbdCamera::T_color_depth where recorded poses belong to the depth camera.
+[[nodiscard]] inline std::optional<Rigid3> depth_camera_offset(const RgbdCamera& camera) {
+  return camera.poses_are_of_depth_camera ? std::optional(camera.T_color_depth) : std::nullopt;
+}
+
+/// `path`: folder of a recording, else a trajectory in TUM format, of which all is taken. `frames` is a selection in the notation of
+/// --frames, empty for all. `T_color_depth` is set where the recorded poses belong to the depth camera.
+[[nodiscard]] Result<RecordedPoses> read_recorded_poses(const std::string& path, const std::string& frames,
+                                                        const std::optional<Rigid3>& T_color_depth);
 
 struct ErrorStatistics {
   double median = 0, mean = 0, rmse = 0, p90 = 0, max = 0;
@@ -51,7 +67,7 @@ using ReferencePose = std::function<std::optional<Rigid3>(std::int64_t stamp_ns)
 /// taken after. Identity with fewer than three common poses.
 [[nodiscard]] Rigid3 align_by_positions(const EstimatedTrajectory& estimate, const ReferencePose& reference);
 /// The same with orientations, which count like positions on a lever of one metre: for bringing one trajectory into a frame by
-/// means of another, where a short walk leaves the turn open. Identity without a common pose.
+/// means of another, where a short recording leaves the turn open. Identity without a common pose.
 [[nodiscard]] Rigid3 align_by_poses(const EstimatedTrajectory& estimate, const ReferencePose& reference);
 
 /// `T_reference_estimate` is applied to the estimate first.

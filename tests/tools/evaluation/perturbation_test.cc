@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What --perturb does to an image, against the formulas written out.
-#include "tools/evaluation/perturbation.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "tools/evaluation/sequence_run.h"
 
 namespace camloc::tools {
 namespace {
@@ -50,9 +50,9 @@ TEST(PerturbationTest, NoiseHasItsSigmaAndDependsOnTheFrameOnly) {
   gray.resize(200, 200);
   std::fill(gray.pixels.begin(), gray.pixels.end(), std::uint8_t{128});
   auto again = gray, other = gray;
-  apply({{Perturbation::Kind::kNoise, 12}}, 5, &gray);
-  apply({{Perturbation::Kind::kNoise, 12}}, 5, &again);
-  apply({{Perturbation::Kind::kNoise, 12}}, 6, &other);
+  apply({*parse_perturbation("noise=12")}, 5, &gray);
+  apply({*parse_perturbation("noise=12")}, 5, &again);
+  apply({*parse_perturbation("noise=12")}, 6, &other);
   EXPECT_EQ(gray.pixels, again.pixels);
   EXPECT_NE(gray.pixels, other.pixels);
   double sum = 0, sum_of_squares = 0;
@@ -68,7 +68,7 @@ TEST(PerturbationTest, BlurSpreadsAPointAlongItsRow) {
   Image<std::uint8_t> image;
   image.resize(31, 3);
   image.row(1)[15] = 90;
-  apply({{Perturbation::Kind::kBlur, 9}}, 0, &image);
+  apply({*parse_perturbation("blur=9")}, 0, &image);
   for (int x = 0; x < 31; ++x) {
     EXPECT_EQ(image.row(1)[x], std::abs(x - 15) <= 4 ? 10 : 0) << x;
     EXPECT_EQ(image.row(0)[x], 0);

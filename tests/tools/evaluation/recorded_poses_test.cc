@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Poses that a recording brings along, as those of its colour camera.
-#include "tools/evaluation/recorded_poses.h"
-
 #include <gtest/gtest.h>
 
 #include "tests/drivers/test_folder.h"
+#include "tools/evaluation/trajectory_error.h"
 
 namespace camloc::tools {
 namespace {
