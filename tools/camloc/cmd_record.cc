@@ -32,8 +32,6 @@ constexpr const char* kFooter =
 struct RecordArguments {
   std::string source_url, out_path, camera_path;
   RecordingFormat format;
-  std::uint64_t max_frames = 0;
-  double max_seconds = 0;
   std::uint64_t min_free_mb = 256;
   RecorderOptions options;
   bool replaces_old = false;
@@ -81,22 +79,21 @@ Status check_space(const RecordArguments& arguments) {
                                   arguments.out_path.c_str(), llu(*free_bytes / 1'000'000), llu(arguments.min_free_mb))};
 }
 
-void print_count(const char* what, std::uint64_t count) {
-  if (count > 0) std::printf("  %-12s %llu\n", what, llu(count));
-}
-
 void print_summary(const RecordingSummary& summary, const std::string& path) {
   std::printf("%s: %llu frames, %llu with depth, %.1f s, %.1f MB%s\n", path.c_str(), llu(summary.frames), llu(summary.frames_with_depth),
               summary.seconds, 1e-6 * static_cast<double>(summary.bytes), summary.dropped + summary.unwritten == 0 ? ", none dropped" : "");
-  print_count("dropped", summary.dropped);
-  print_count("not written", summary.unwritten);
-  print_count("missed", summary.missed);
-  print_count("corrupt", summary.corrupt);
-  print_count("out of order", summary.disordered);
-  print_count("incomplete", summary.health.frames_incomplete);
-  print_count("unpaired", summary.health.frames_unpaired);
-  print_count("lost packets", summary.health.packets_lost);
-  if (summary.accelerations > 0) print_count("acceleration", summary.accelerations);
+  const std::pair<const char*, std::uint64_t> counts[] = {{"dropped", summary.dropped},
+                                                          {"not written", summary.unwritten},
+                                                          {"missed", summary.missed},
+                                                          {"corrupt", summary.corrupt},
+                                                          {"out of order", summary.disordered},
+                                                          {"incomplete", summary.health.frames_incomplete},
+                                                          {"unpaired", summary.health.frames_unpaired},
+                                                          {"lost packets", summary.health.packets_lost},
+                                                          {"acceleration", summary.accelerations}};
+  for (const auto& [what, count] : counts) {
+    if (count > 0) std::printf("  %-12s %llu\n", what, llu(count));
+  }
   if (!summary.has_camera)
     std::printf("  no camera.toml: the source knows no calibration; copy yours there, or use 'camloc camera calibrate'\n");
 }
@@ -112,8 +109,6 @@ Status outcome(const RecordingSummary& summary, const std::string& path) {
 
 Status run(RecordArguments arguments) {
   arguments.options.min_free_bytes = arguments.min_free_mb * 1'000'000;
-  if (arguments.max_frames > 0) arguments.options.max_frames = arguments.max_frames;
-  if (arguments.max_seconds > 0) arguments.options.max_seconds = arguments.max_seconds;
   if (Status status = check_not_the_source(arguments); !status) return status;
   if (Status status = check_space(arguments); !status) return status;
   if (!arguments.camera_path.empty()) {
@@ -152,8 +147,10 @@ void add_record_command(CLI::App& app, int& exit_code) {
   command->add_option("--source", arguments->source_url, "Frame source; 'camloc doctor' lists what this build knows")->required();
   command->add_option("--out", arguments->out_path, "Folder to write")->required();
   command->add_option("--camera", arguments->camera_path, "Camera file to put beside the frames (default: what the source knows)");
-  auto* frames = command->add_option("--frames", arguments->max_frames, "Stop after so many frames")->check(CLI::PositiveNumber);
-  command->add_option("--seconds", arguments->max_seconds, "Stop after so many seconds")->check(CLI::PositiveNumber)->excludes(frames);
+  auto* frames = command->add_option("--frames", arguments->options.max_frames, "Stop after so many frames")->check(CLI::PositiveNumber);
+  command->add_option("--seconds", arguments->options.max_seconds, "Stop after so many seconds")
+      ->check(CLI::PositiveNumber)
+      ->excludes(frames);
   command->add_flag("--color", arguments->format.is_color, "Colour images instead of grey ones, which is what localization uses");
   auto* jpeg = command->add_flag("--jpeg", arguments->format.is_jpeg, "Image as JPEG: a third of the size, not bit-exact");
   command->add_option("--quality", arguments->format.jpeg_quality, "Of the JPEG (default 95)")->check(CLI::Range(1, 100))->needs(jpeg);

@@ -28,10 +28,6 @@ class FrameWriters {
     int queued = 0;
     Status failure;  ///< of the first frame that could not be written; nothing is written after it
   };
-  struct Acceleration {
-    std::int64_t stamp_ns;
-    Eigen::Vector3d value;
-  };
 
   /// `folder` outlives this object. Buffers for `queue_frames` frames are kept and reused.
   FrameWriters(RecordingFolder* folder, int queue_frames, int num_writers);

@@ -9,6 +9,7 @@
 #include <ctime>
 #include <limits>
 
+#include "tools/common/text_format.h"
 #include "tools/recording/frame_writers.h"
 
 namespace camloc::tools {
@@ -22,6 +23,19 @@ std::int64_t read_clock_ns(clockid_t clock) {
   timespec now{};
   ::clock_gettime(clock, &now);
   return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+/// What to add to CLOCK_MONOTONIC for nanoseconds since the epoch, now: the tightest of a few readings of both clocks.
+std::int64_t monotonic_to_epoch_ns() {
+  std::int64_t best_width_ns = std::numeric_limits<std::int64_t>::max(), offset_ns = 0;
+  for (int i = 0; i < 10; ++i) {
+    const std::int64_t before_ns = read_clock_ns(CLOCK_MONOTONIC), epoch_ns = read_clock_ns(CLOCK_REALTIME),
+                       after_ns = read_clock_ns(CLOCK_MONOTONIC);
+    if (after_ns - before_ns >= best_width_ns) continue;
+    best_width_ns = after_ns - before_ns;
+    offset_ns = epoch_ns - (before_ns + best_width_ns / 2);
+  }
+  return offset_ns;
 }
 
 /// One recording while it runs.
@@ -109,12 +123,11 @@ class Recorder {
     const std::optional<RgbdCamera>& camera = options_.camera ? options_.camera : source_.info().camera;
     if (!camera) return Status::ok();
     const Intrinsics& k = camera->color;
-    const int width = format_.is_color ? frame_.color.width : frame_.gray.width,
-              height = format_.is_color ? frame_.color.height : frame_.gray.height;
+    const int width = format_.is_color ? frame_.color.width : frame_.gray.width;
+    const int height = format_.is_color ? frame_.color.height : frame_.gray.height;
     if (k.width != width || k.height != height) {
-      return {ErrorCode::kInvalid, "camera '" + camera->name + "' is of " + std::to_string(k.width) + "x" + std::to_string(k.height) +
-                                       " pixels, the images have " + std::to_string(width) + "x" + std::to_string(height) +
-                                       "; give the right --camera"};
+      return {ErrorCode::kInvalid, text_of("camera '%s' is of %dx%d pixels, the images have %dx%d; give the right --camera",
+                                           camera->name.c_str(), k.width, k.height, width, height)};
     }
     summary_.has_camera = true;
     return folder_.write_camera(*camera);
@@ -132,7 +145,7 @@ class Recorder {
       break;
     }
     if (!totals.failure) summary_.end = totals.failure;
-    const Result<std::uint64_t> free_bytes = hooks_.free_bytes(folder_);
+    const Result<std::uint64_t> free_bytes = hooks_.free_bytes(folder_.path());
     if (free_bytes && *free_bytes < options_.min_free_bytes && summary_.end) {
       summary_.end = {ErrorCode::kIo, folder_.path() + ": only " + std::to_string(*free_bytes >> 20) +
                                           " MiB left on the disk, stopped; free some, or lower --min-free"};
@@ -147,7 +160,6 @@ class Recorder {
     summary_.frames = totals.frames;
     summary_.frames_with_depth = totals.frames_with_depth;
     summary_.bytes = totals.bytes;
-    summary_.is_epoch = is_live_;
     summary_.health = source_.health();
     const Status synced = folder_.sync();
     if (summary_.end && !synced) summary_.end = synced;
@@ -171,18 +183,6 @@ class Recorder {
 };
 
 }  // namespace
-
-std::int64_t monotonic_to_epoch_ns() {
-  std::int64_t best_width_ns = std::numeric_limits<std::int64_t>::max(), offset_ns = 0;
-  for (int i = 0; i < 10; ++i) {
-    const std::int64_t before_ns = read_clock_ns(CLOCK_MONOTONIC), epoch_ns = read_clock_ns(CLOCK_REALTIME),
-                       after_ns = read_clock_ns(CLOCK_MONOTONIC);
-    if (after_ns - before_ns >= best_width_ns) continue;
-    best_width_ns = after_ns - before_ns;
-    offset_ns = epoch_ns - (before_ns + best_width_ns / 2);
-  }
-  return offset_ns;
-}
 
 RecordingSummary record(FrameSource* source, RecordingFolder* folder, const RecordingFormat& format, const RecorderOptions& options,
                         const RecorderHooks& hooks) {

@@ -38,7 +38,6 @@ struct RecordingSummary {
   std::uint64_t accelerations = 0;
   double seconds = 0;  ///< first to last stamp
   bool has_camera = false;
-  bool is_epoch = false;  ///< stamps were moved from CLOCK_MONOTONIC to the epoch
   FrameSourceHealth health;
   Status end;  ///< why it ended before its time; ok otherwise
 };
@@ -52,17 +51,12 @@ struct RecorderProgress {
 struct RecorderHooks {
   std::function<bool()> is_interrupted = [] { return false; };
   std::function<void(const RecorderProgress&)> on_progress = [](const RecorderProgress&) {};  ///< after every frame
-  std::function<Result<std::uint64_t>(const RecordingFolder&)> free_bytes = [](const RecordingFolder& folder) {
-    return folder.free_bytes();
-  };
+  std::function<Result<std::uint64_t>(const std::string&)> free_bytes = free_bytes_at;        ///< of the folder
 };
 
 /// Records until the source ends, a limit is reached, or something fails; what was written until then is whole in each case.
 /// kInvalid in `end`: the source has no colour although the format asks for it, or the camera does not fit the images.
 [[nodiscard]] RecordingSummary record(FrameSource* source, RecordingFolder* folder, const RecordingFormat& format,
                                       const RecorderOptions& options, const RecorderHooks& hooks = {});
-
-/// What to add to CLOCK_MONOTONIC for nanoseconds since the epoch, now: the tightest of a few readings of both clocks.
-[[nodiscard]] std::int64_t monotonic_to_epoch_ns();
 
 }  // namespace camloc::tools

@@ -96,13 +96,10 @@ Result<RecordingFolder> RecordingFolder::create(const std::string& path, const R
     if (error) return Status(ErrorCode::kIo, path + part + ": " + error.message());
   }
   RecordingFolder folder(path, format);
-  if (Status status = folder.open_index("rgb.txt", "# colour or grey images\n# timestamp filename\n", &folder.color_index_); !status)
-    return status;
-  if (Status status = folder.open_index("depth.txt", "# depth images, raw units; camera.toml says how long one is\n# timestamp filename\n",
-                                        &folder.depth_index_);
-      !status) {
-    return status;
-  }
+  Status status = folder.open_index("rgb.txt", "# colour or grey images\n# timestamp filename\n", &folder.color_index_);
+  const char* title = "# depth images, raw units; camera.toml says how long one is\n# timestamp filename\n";
+  if (status) status = folder.open_index("depth.txt", title, &folder.depth_index_);
+  if (!status) return status;
   return folder;
 }
 
@@ -179,7 +176,5 @@ void RecordingFolder::discard() {
   for (const char* name : kRecordingFiles) fs::remove(fs::path(path_) / name, ignored);
   for (const char* part : {"/rgb", "/depth", ""}) fs::remove(path_ + part, ignored);  // refused by the system where something is in it
 }
-
-Result<std::uint64_t> RecordingFolder::free_bytes() const { return free_bytes_at(path_); }
 
 }  // namespace camloc::tools

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 
 #include "core/base/frame.h"
@@ -46,8 +45,6 @@ class RecordingFolder {
   [[nodiscard]] Status sync() const;
   /// Deletes the folder of a recording without a frame.
   void discard();
-  /// Bytes an ordinary user may still write here.
-  [[nodiscard]] Result<std::uint64_t> free_bytes() const;
 
  private:
   RecordingFolder(std::string path, const RecordingFormat& format) : path_(std::move(path)), format_(format) {}

@@ -66,7 +66,7 @@ TEST_F(RecorderTest, ADiskThatFillsUpEndsItWhole) {
   RecordingFolder folder = make_folder(out_);
   RecorderHooks hooks;
   int calls = 0;
-  hooks.free_bytes = [&calls](const RecordingFolder&) -> Result<std::uint64_t> {
+  hooks.free_bytes = [&calls](const std::string&) -> Result<std::uint64_t> {
     return ++calls < 10 ? std::uint64_t{1} << 40 : std::uint64_t{1} << 20;
   };
   const RecordingSummary summary = record(&source, &folder, {}, {}, hooks);
