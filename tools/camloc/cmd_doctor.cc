@@ -103,8 +103,7 @@ void print_json(const std::vector<Check>& checks, bool is_ok) {
 
 int run(const DoctorOptions& options) {
   const std::vector<Check> checks = examine(options);
-  bool is_ok = true;
-  for (const auto& check : checks) is_ok = is_ok && check.level != Level::kFailure;
+  const bool is_ok = std::none_of(checks.begin(), checks.end(), [](const Check& check) { return check.level == Level::kFailure; });
   if (options.is_json) {
     print_json(checks, is_ok);
   } else {

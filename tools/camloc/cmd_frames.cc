@@ -7,13 +7,13 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <string>
 #include <vector>
 
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
 #include "core/io/sequence.h"
 #include "tools/camloc/commands.h"
+#include "tools/common/json_text.h"
 
 namespace camloc::tools {
 namespace {
@@ -34,18 +34,13 @@ const Vector3d kRight = Vector3d::UnitX(), kDown = Vector3d::UnitY(), kForward =
 struct Example {
   Rigid3 T_map_camera;
   Vector3d p_map{5.0, 2.4, 1.9};
-  Intrinsics intrinsics;
+  Intrinsics intrinsics{640, 480, 525, 525, 319.5, 239.5};
 
   Example() {
     const double yaw_rad = 20 * std::numbers::pi / 180;
     const Matrix3d R_body_camera = columns(kForward, -kRight, -kDown).transpose();  // body: x forward, y left, z up
     T_map_camera.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ()).toRotationMatrix() * R_body_camera);
     T_map_camera.translation = {2.0, 1.0, 1.6};
-    intrinsics.width = 640;
-    intrinsics.height = 480;
-    intrinsics.fx = intrinsics.fy = 525;
-    intrinsics.cx = 319.5;
-    intrinsics.cy = 239.5;
   }
 };
 
@@ -64,8 +59,6 @@ std::vector<Convention> conventions() {
       {"Unreal", "x forward, y right, z up", columns(kForward, kRight, -kDown)},
   };
 }
-
-const char* handedness(const Matrix3d& axes) { return axes.determinant() > 0 ? "right-handed" : "LEFT-handed"; }
 
 void print_vector(const char* name, const Vector3d& v) { std::printf("  %-32s = [%+.4f %+.4f %+.4f]\n", name, v.x(), v.y(), v.z()); }
 
@@ -106,8 +99,8 @@ void print_projection(const Example& example) {
   std::printf("The same point in the camera axes of others:\n");
   for (const auto& convention : conventions()) {
     const Vector3d p = convention.camera_from_other.transpose() * p_camera;
-    std::printf("  %-28s %-27s %-13s [%+.4f %+.4f %+.4f] m\n", convention.name, convention.axes, handedness(convention.camera_from_other),
-                p.x(), p.y(), p.z());
+    std::printf("  %-28s %-27s %-13s [%+.4f %+.4f %+.4f] m\n", convention.name, convention.axes,
+                convention.camera_from_other.determinant() > 0 ? "right-handed" : "LEFT-handed", p.x(), p.y(), p.z());
   }
   std::printf("  Unreal counts in centimetres. A left-handed convention is a mirror image: no rotation leads there.\n\n");
 }
@@ -123,8 +116,6 @@ void print_covariance(const Example& example) {
               error[4], error[5]);
 }
 
-nlohmann::json to_json(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
 nlohmann::json to_json(const Eigen::Matrix4d& matrix) {
   nlohmann::json rows = nlohmann::json::array();
   for (int row = 0; row < 4; ++row) rows.push_back({matrix(row, 0), matrix(row, 1), matrix(row, 2), matrix(row, 3)});
@@ -138,36 +129,32 @@ void print_json(const Example& example) {
   nlohmann::json document{{"T_map_camera", to_json(example.T_map_camera.matrix())},
                           {"T_camera_map", to_json(example.T_map_camera.inverse().matrix())},
                           {"rotation_wxyz", {q.w(), q.x(), q.y(), q.z()}},
-                          {"p_map", to_json(example.p_map)},
-                          {"p_camera", to_json(p_camera)},
+                          {"p_map", json_of(example.p_map)},
+                          {"p_camera", json_of(p_camera)},
                           {"pixel", {pixel.x(), pixel.y()}}};
   for (const auto& convention : conventions()) {
     document["conventions"][convention.name] = {{"axes", convention.axes},
                                                 {"is_right_handed", convention.camera_from_other.determinant() > 0},
-                                                {"p", to_json(Vector3d(convention.camera_from_other.transpose() * p_camera))}};
+                                                {"p", json_of(Vector3d(convention.camera_from_other.transpose() * p_camera))}};
   }
   std::printf("%s\n", document.dump(2).c_str());
 }
 
-int run(bool is_json) {
+void run(bool is_json) {
   const Example example;
-  if (is_json) {
-    print_json(example);
-    return 0;
-  }
+  if (is_json) return print_json(example);
   print_transforms(example);
   print_projection(example);
   print_covariance(example);
-  return 0;
 }
 
 }  // namespace
 
-void add_frames_command(CLI::App& app, int& exit_code) {
+void add_frames_command(CLI::App& app, int& /*exit_code*/) {
   auto is_json = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("frames", "Frame conventions with a worked example");
   command->add_flag("--json", *is_json, "the numbers as JSON");
-  command->callback([is_json, &exit_code] { exit_code = run(*is_json); });
+  command->callback([is_json] { run(*is_json); });
 }
 
 }  // namespace camloc::tools
