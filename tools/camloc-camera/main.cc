@@ -8,14 +8,12 @@
 #include <map>
 
 #include "core/io/camera_file.h"
+#include "core/io/file_bytes.h"
 #include "core/io/image_writer.h"
-#include "core/io/replace_file.h"
 #include "drivers/sources.h"
 #include "tools/camloc-camera/calibration.h"
 #include "tools/common/command_line.h"
-#include "tools/common/interrupt.h"
-#include "tools/common/output_path.h"
-#include "tools/common/progress_line.h"
+#include "tools/common/terminal_observer.h"
 #include "tools/common/text_format.h"
 
 namespace camloc::camera_tool {

@@ -5,16 +5,14 @@
 // ever wrong?
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <map>
 #include <memory>
 
 #include "tools/camloc/commands.h"
+#include "tools/common/command_line.h"
 #include "tools/common/json_text.h"
-#include "tools/common/output_path.h"
 #include "tools/common/terminal_observer.h"
 #include "tools/common/text_format.h"
-#include "tools/evaluation/recorded_poses.h"
 #include "tools/evaluation/sequence_run.h"
 #include "tools/evaluation/top_view.h"
 #include "tools/evaluation/wakeups.h"
@@ -32,13 +30,8 @@ struct WakeupArguments {
   bool is_json = false;
 };
 
-Result<std::vector<StampedPose>> read_truth(const WakeupArguments& arguments, const RgbdCamera& camera) {
-  const std::string& path = arguments.reference_path.empty() ? arguments.run.sequence_url : arguments.reference_path;
-  if (!std::filesystem::is_directory(path)) return read_tum_trajectory(path);
-  const auto T_color_depth = camera.poses_are_of_depth_camera ? std::optional(camera.T_color_depth) : std::nullopt;
-  auto recorded = read_recorded_poses(path, "", T_color_depth);
-  if (!recorded) return recorded.status();
-  return std::move(recorded->poses);
+const std::string& reference_of(const WakeupArguments& arguments) {
+  return arguments.reference_path.empty() ? arguments.run.sequence_url : arguments.reference_path;
 }
 
 std::map<std::string, std::uint64_t> reasons_of_never(std::span<const Wakeup> wakeups) {
@@ -124,9 +117,9 @@ Status wakeup(const WakeupArguments& arguments) {
   if (!run) return run.status();
   if (!run->source->info().num_frames)
     return {ErrorCode::kInvalid, arguments.run.sequence_url + ": is no recording; a live camera cannot be woken up at its places again"};
-  const auto truth = read_truth(arguments, run->camera);
+  const auto truth = read_recorded_poses(reference_of(arguments), "", depth_camera_offset(run->camera));
   if (!truth) return truth.status();
-  const auto truth_at = [&truth](std::int64_t stamp_ns) { return pose_at(*truth, stamp_ns); };
+  const auto truth_at = [&truth](std::int64_t stamp_ns) { return pose_at(truth->poses, stamp_ns); };
 
   WakeupRun wakeups(*run->map, run->camera, run->localizer_options, truth_at, arguments.wakeup, *run->source->info().num_frames);
   TerminalObserver observer;
@@ -145,15 +138,14 @@ Status wakeup(const WakeupArguments& arguments) {
   const bool has_truth = std::any_of(wakeups.results().begin(), wakeups.results().end(),
                                      [](const Wakeup& start) { return start.T_map_camera_start.has_value(); });
   if (!has_truth) {
-    return {ErrorCode::kInvalid, (arguments.reference_path.empty() ? arguments.run.sequence_url : arguments.reference_path) +
-                                     ": has no pose at the times of the recording: nothing can be judged by it"};
+    return {ErrorCode::kInvalid, reference_of(arguments) + ": has no pose at the times of the recording: nothing can be judged by it"};
   }
   const WakeupSummary summary = summarize(wakeups.results());
   if (arguments.is_json)
     print_json(summary, wakeups.results());
   else
     print_table(summary, wakeups.results(), arguments.wakeup.seconds);
-  return arguments.png_path.empty() ? Status::ok() : draw(arguments, *run->map, *truth, summary, wakeups.results());
+  return arguments.png_path.empty() ? Status::ok() : draw(arguments, *run->map, truth->poses, summary, wakeups.results());
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include <numeric>
 
 #include "core/geometry/alignment.h"
-#include "core/io/frame_selection.h"
+#include "core/io/sequence.h"
 #include "tools/common/text_format.h"
 
 namespace camloc::tools {
