@@ -6,12 +6,12 @@
 
 #include <dlfcn.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
 
 #include "core/io/file_bytes.h"
+#include "core/io/text.h"
 #include "drivers/openni2/openni2_library.h"
 
 namespace camloc {
@@ -24,12 +24,10 @@ namespace fs = std::filesystem;
 std::string repository_of(const fs::path& ini) {
   const Result<std::string> text = read_file_text(ini.string(), 1 << 20);
   if (!text) return {};
-  for (std::size_t begin = 0; begin < text->size();) {
-    const std::size_t end = std::min(text->find('\n', begin), text->size());
-    std::string line = text->substr(begin, end - begin);
-    begin = end + 1;
-    std::erase_if(line, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
-    if (line.rfind("Repository=", 0) == 0) return line.substr(11);
+  for (const TextLine& content : content_lines(*text)) {
+    std::string line(content.text);
+    std::erase_if(line, [](char c) { return c == ' ' || c == '\t'; });
+    if (line.starts_with("Repository=")) return line.substr(11);
   }
   return {};
 }
@@ -40,44 +38,13 @@ std::string drivers_folder_of(const std::string& library_path) {
   return (fs::path(library_path).parent_path() / (repository.empty() ? "OpenNI2/Drivers" : repository)).string();
 }
 
-bool is_driver_name(const std::string& name) {
-  return name.rfind("lib", 0) == 0 && name.size() > 8 && name.compare(name.size() - 5, 5, ".so.0") == 0;
-}
-
-Openni2Driver inspect_driver(const fs::path& path) {
-  Openni2Driver driver{path.filename().string(), false, ""};
-  // RTLD_NOLOAD: is it there, after the library has had its chance?
+/// By its name one that Debian's library looks at, and loaded by now.
+bool is_loaded_driver(const fs::path& path) {
+  const std::string name = path.filename().string();
+  if (!name.starts_with("lib") || name.size() <= 8 || !name.ends_with(".so.0")) return false;
   void* handle = ::dlopen(path.c_str(), RTLD_LAZY | RTLD_NOLOAD);
-  driver.is_loaded = handle != nullptr;
-  if (handle != nullptr) {
-    ::dlclose(handle);
-    return driver;
-  }
-  // The reason is the loader's, or the driver has loaded and lacks what a driver must have.
-  handle = ::dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
-  const char* why = handle == nullptr ? ::dlerror() : nullptr;
-  driver.problem = handle == nullptr ? (why != nullptr ? why : "cannot be loaded") : "was refused by the library";
   if (handle != nullptr) ::dlclose(handle);
-  return driver;
-}
-
-std::vector<Openni2Driver> inspect_drivers(const std::string& folder) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-    names.push_back(entry->path().filename().string());
-  std::sort(names.begin(), names.end());
-  std::vector<Openni2Driver> drivers;
-  for (const std::string& name : names) {
-    if (is_driver_name(name)) {
-      drivers.push_back(inspect_driver(fs::path(folder) / name));
-    } else if (name.find(".so") != std::string::npos && std::find(names.begin(), names.end(), name + ".0") == names.end()) {
-      drivers.push_back({name, false,
-                         "its name does not end in .so.0, so Debian's OpenNI2 passes it over: add a symbolic link " +
-                             name.substr(0, name.find(".so")) + ".so.0"});
-    }
-  }
-  return drivers;
+  return handle != nullptr;
 }
 
 }  // namespace
@@ -90,24 +57,20 @@ Openni2Installation inspect_openni2() {
     return result;
   }
   result.is_library_found = true;
-  result.library_path = library.value()->path;
-  const OniVersion& version = library.value()->version;
-  result.version = std::to_string(version.major) + "." + std::to_string(version.minor) + "." + std::to_string(version.maintenance) + "." +
-                   std::to_string(version.build);
-  result.drivers_folder = drivers_folder_of(result.library_path);
+  result.version = openni2::version_text(library.value()->version);
+  result.drivers_folder = drivers_folder_of(library.value()->path);
   const Result<std::shared_ptr<openni2::Session>> session = openni2::Session::acquire();
   result.is_started = session.is_ok();
   if (!session) result.problem = session.status().message();
-  result.drivers = inspect_drivers(result.drivers_folder);
-  if (session && std::none_of(result.drivers.begin(), result.drivers.end(), [](const Openni2Driver& driver) { return driver.is_loaded; })) {
-    result.problem = result.drivers_folder + ": no driver was loaded from here";
-  }
+  std::error_code error;
+  for (fs::directory_iterator entry(result.drivers_folder, error), end; !error && entry != end; entry.increment(error))
+    result.num_drivers += is_loaded_driver(entry->path()) ? 1 : 0;
   if (!session) return result;
   for (const openni2::DeviceEntry& entry : (*session)->devices()) {
     char usb_id[16];
     std::snprintf(usb_id, sizeof(usb_id), "%04x:%04x", static_cast<unsigned>(entry.usb_vendor_id) & 0xFFFFU,
                   static_cast<unsigned>(entry.usb_product_id) & 0xFFFFU);
-    result.devices.push_back({entry.uri, entry.vendor, entry.name, usb_id});
+    result.cameras.push_back({"openni2://" + entry.uri, entry.vendor + " " + entry.name, std::string("USB id ") + usb_id, ""});
   }
   return result;
 }
@@ -119,18 +82,15 @@ CameraListing listing_of(const Openni2Installation& openni2) {
     listing.advice = "sudo apt install libopenni2-0";
     return listing;
   }
-  const auto num_loaded =
-      std::count_if(openni2.drivers.begin(), openni2.drivers.end(), [](const Openni2Driver& driver) { return driver.is_loaded; });
-  if (!openni2.is_started || num_loaded == 0) {
-    if (listing.problem.empty()) listing.problem = "no driver in " + openni2.drivers_folder + " was loaded";
+  if (!openni2.is_started || openni2.num_drivers == 0) {
+    if (listing.problem.empty()) listing.problem = openni2.drivers_folder + ": no driver was loaded from here";
     listing.advice =
         "ls " + openni2.drivers_folder + "; drivers are called lib*.so.0; Repository= in /etc/openni2/OpenNI.ini names another folder";
     return listing;
   }
-  listing.searched = "OpenNI2 " + openni2.version + ", " + std::to_string(num_loaded) + " drivers in " + openni2.drivers_folder;
+  listing.searched = "OpenNI2 " + openni2.version + ", " + std::to_string(openni2.num_drivers) + " drivers in " + openni2.drivers_folder;
   listing.advice = "plug the camera in and see 'usb rights'; a Kinect V1 is kinect://, not openni2://";
-  for (const Openni2Device& device : openni2.devices)
-    listing.cameras.push_back({"openni2://" + device.uri, device.vendor + " " + device.name, "USB id " + device.usb_id, ""});
+  listing.cameras = openni2.cameras;
   return listing;
 }
 

@@ -6,6 +6,7 @@
 // only files that are called lib*.so.0.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -14,26 +15,14 @@
 
 namespace camloc {
 
-struct Openni2Driver {
-  std::string file;        ///< its name in the folder
-  bool is_loaded = false;  ///< by the library
-  std::string problem;     ///< why not, empty where it is
-};
-
-struct Openni2Device {
-  std::string uri, vendor, name;
-  std::string usb_id;  ///< "1d27:0601"
-};
-
 struct Openni2Installation {
   bool is_library_found = false;  ///< and of a version that can be used
   bool is_started = false;        ///< the library accepted to work
   std::string problem;            ///< one line, empty where there is none; names the package or the folder to mend
-  std::string library_path;
   std::string version;
   std::string drivers_folder;
-  std::vector<Openni2Driver> drivers;
-  std::vector<Openni2Device> devices;
+  std::ptrdiff_t num_drivers = 0;  ///< that the library has loaded from there
+  std::vector<FoundCamera> cameras;
 };
 
 /// Loads and starts the library and asks it for devices; opens none of them. Takes some 20 ms, longer while a driver waits for

@@ -313,12 +313,6 @@ class Scanner {
 
 }  // namespace
 
-bool OniFormat::operator==(const OniFormat& other) const {
-  return width == other.width && height == other.height && pixels.layout == other.pixels.layout &&
-         pixels.depth_unit_m == other.pixels.depth_unit_m && is_mirrored == other.is_mirrored && is_cropped == other.is_cropped &&
-         horizontal_fov_rad == other.horizontal_fov_rad && vertical_fov_rad == other.vertical_fov_rad;
-}
-
 Result<OniFile> OniFile::open(const std::string& path) {
   // O_NONBLOCK: opening a named pipe must not hang.
   UniqueFd file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));

@@ -45,7 +45,7 @@ struct OniFormat {
   bool is_cropped = false;
   double horizontal_fov_rad = 0;  ///< 0 where the recording does not say
   double vertical_fov_rad = 0;
-  bool operator==(const OniFormat& other) const;
+  bool operator==(const OniFormat& other) const = default;
 };
 
 struct OniFrameEntry {

@@ -93,16 +93,11 @@ Status Device::error(const std::string& what) const {
   return {ErrorCode::kUnavailable, "OpenNI2 device " + entry_.uri + ": " + what + " (" + session_->last_error() + ")"};
 }
 
-std::vector<VideoMode> Device::offered_modes(OniSensorType sensor) const {
+std::span<const OniVideoMode> Device::offered_modes(OniSensorType sensor) const {
   constexpr int kMaxModes = 1000;
-  std::vector<VideoMode> modes;
   const OniSensorInfo* info = api().device_get_sensor_info(handle_, sensor);
-  if (info == nullptr || info->pSupportedVideoModes == nullptr) return modes;
-  for (int i = 0; i < std::min(info->numSupportedVideoModes, kMaxModes); ++i) {
-    const OniVideoMode& mode = info->pSupportedVideoModes[i];
-    modes.push_back({mode.pixelFormat, mode.resolutionX, mode.resolutionY, mode.fps});
-  }
-  return modes;
+  if (info == nullptr || info->pSupportedVideoModes == nullptr) return {};
+  return {info->pSupportedVideoModes, static_cast<std::size_t>(std::clamp(info->numSupportedVideoModes, 0, kMaxModes))};
 }
 
 Status Device::open_streams(const ModeRequest& request) {
@@ -113,7 +108,7 @@ Status Device::open_streams(const ModeRequest& request) {
   if (Status status = open_stream(is_infrared_ ? ONI_SENSOR_IR : ONI_SENSOR_COLOR, request, &image_); !status) return status;
   if (offered_modes(ONI_SENSOR_DEPTH).empty()) return Status::ok();
   // Registered depth has the pixels of the image, so the same size comes first.
-  const ModeRequest like_image{image_.mode.width, image_.mode.height, image_.mode.fps};
+  const ModeRequest like_image{image_.mode.resolutionX, image_.mode.resolutionY, image_.mode.fps};
   const bool fits = choose_mode(offered_modes(ONI_SENSOR_DEPTH), StreamUse::kDepth, like_image).has_value();
   if (Status status = open_stream(ONI_SENSOR_DEPTH, fits ? like_image : ModeRequest{0, 0, request.fps}, &depth_); !status) return status;
   set_registration();
@@ -124,18 +119,18 @@ Status Device::open_streams(const ModeRequest& request) {
 
 Status Device::open_stream(OniSensorType sensor, const ModeRequest& request, Stream* stream) {
   const char* name = sensor == ONI_SENSOR_DEPTH ? "depth" : sensor == ONI_SENSOR_COLOR ? "colour" : "infrared";
-  const std::vector<VideoMode> offered = offered_modes(sensor);
-  const std::optional<VideoMode> mode = choose_mode(offered, sensor == ONI_SENSOR_DEPTH ? StreamUse::kDepth : StreamUse::kImage, request);
+  const std::span<const OniVideoMode> offered = offered_modes(sensor);
+  const std::optional<OniVideoMode> mode =
+      choose_mode(offered, sensor == ONI_SENSOR_DEPTH ? StreamUse::kDepth : StreamUse::kImage, request);
   if (!mode)
     return {ErrorCode::kUnsupported, "OpenNI2 device " + entry_.uri + ": no " + name + " mode fits; it offers " + describe(offered)};
   if (api().device_create_stream(handle_, sensor, &stream->handle) != ONI_STATUS_OK) {
     stream->handle = nullptr;
     return error(std::string("its ") + name + " stream cannot be opened");
   }
-  const OniVideoMode wanted{static_cast<OniPixelFormat>(mode->oni_pixel_format), mode->width, mode->height, mode->fps};
-  (void)api().stream_set_property(stream->handle, ONI_STREAM_PROPERTY_VIDEO_MODE, &wanted, sizeof(wanted));
+  (void)api().stream_set_property(stream->handle, ONI_STREAM_PROPERTY_VIDEO_MODE, &*mode, sizeof(*mode));
   const auto got = stream_property<OniVideoMode>(api(), stream->handle, ONI_STREAM_PROPERTY_VIDEO_MODE);
-  if (!got || got->pixelFormat != wanted.pixelFormat || got->resolutionX != wanted.resolutionX || got->resolutionY != wanted.resolutionY) {
+  if (!got || got->pixelFormat != mode->pixelFormat || got->resolutionX != mode->resolutionX || got->resolutionY != mode->resolutionY) {
     return error(std::string("its ") + name + " stream refuses the mode " + describe(*mode) + " that it offers");
   }
   stream->mode = {got->pixelFormat, got->resolutionX, got->resolutionY, got->fps > 0 ? got->fps : mode->fps};
@@ -189,7 +184,6 @@ void Device::disable_sync() {
 }
 
 std::string Device::description() const {
-  const OniVersion& version = session_->library().version;
   std::string text = "OpenNI2 " + entry_.vendor + " " + entry_.name + " at " + entry_.uri + (serial_.empty() ? "" : ", serial " + serial_) +
                      ", " + (is_infrared_ ? "infrared " : "colour ") + describe(image_.mode);
   if (has_depth()) {
@@ -199,14 +193,13 @@ std::string Device::description() const {
                            : ", not registered to colour: needs a calibration file";
     text += is_synchronized_ ? ", synchronized with colour" : ", not synchronized: paired by time";
   }
-  return text + ", library " + std::to_string(version.major) + "." + std::to_string(version.minor) + "." +
-         std::to_string(version.maintenance) + "." + std::to_string(version.build);
+  return text + ", library " + version_text(session_->library().version);
 }
 
 std::optional<RgbdCamera> Device::camera() const {
   if (has_depth() && !is_registered_ && !is_infrared_) return std::nullopt;
-  const StreamGeometry image{image_.mode.width, image_.mode.height, image_.horizontal_fov_rad, image_.vertical_fov_rad};
-  return registered_camera(image, depth_.mode.width, depth_.mode.height, has_depth() ? depth_.pixels.depth_unit_m : 0.001);
+  const StreamGeometry image{image_.mode.resolutionX, image_.mode.resolutionY, image_.horizontal_fov_rad, image_.vertical_fov_rad};
+  return registered_camera(image, depth_.mode.resolutionX, depth_.mode.resolutionY, has_depth() ? depth_.pixels.depth_unit_m : 0.001);
 }
 
 }  // namespace camloc::openni2

@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "core/geometry/camera.h"
@@ -17,7 +18,7 @@ namespace camloc::openni2 {
 /// One running stream.
 struct Stream {
   OniStreamHandle handle = nullptr;
-  VideoMode mode;
+  OniVideoMode mode{};
   PixelFormat pixels;
   bool is_mirrored = false;  ///< the device insists; the conversion undoes it
   double horizontal_fov_rad = 0, vertical_fov_rad = 0;
@@ -56,7 +57,7 @@ class Device {
   [[nodiscard]] const Api& api() const { return session_->api(); }
   [[nodiscard]] Status open_streams(const ModeRequest& request);
   [[nodiscard]] Status open_stream(OniSensorType sensor, const ModeRequest& request, Stream* stream);
-  [[nodiscard]] std::vector<VideoMode> offered_modes(OniSensorType sensor) const;
+  [[nodiscard]] std::span<const OniVideoMode> offered_modes(OniSensorType sensor) const;
   void set_registration();
   [[nodiscard]] bool read_registration() const;
   [[nodiscard]] Status error(const std::string& what) const;

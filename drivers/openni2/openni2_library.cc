@@ -22,43 +22,14 @@ std::string text_of(const char (&field)[N]) {
   return {field, ::strnlen(field, N)};
 }
 
-/// False, with the name in `missing`, where the library lacks it.
-template <typename Function>
-bool find_symbol(void* handle, const char* name, Function* function, std::string* missing) {
-  *function = reinterpret_cast<Function>(::dlsym(handle, name));
-  if (*function == nullptr) *missing = name;
-  return *function != nullptr;
-}
-
-bool find_all(void* handle, Api* api, std::string* missing) {
-  return find_symbol(handle, "oniInitialize", &api->initialize, missing) && find_symbol(handle, "oniShutdown", &api->shutdown, missing) &&
-         find_symbol(handle, "oniGetVersion", &api->get_version, missing) &&
-         find_symbol(handle, "oniGetExtendedError", &api->get_extended_error, missing) &&
-         find_symbol(handle, "oniSetLogConsoleOutput", &api->set_log_console_output, missing) &&
-         find_symbol(handle, "oniSetLogFileOutput", &api->set_log_file_output, missing) &&
-         find_symbol(handle, "oniGetDeviceList", &api->get_device_list, missing) &&
-         find_symbol(handle, "oniReleaseDeviceList", &api->release_device_list, missing) &&
-         find_symbol(handle, "oniRegisterDeviceCallbacks", &api->register_device_callbacks, missing) &&
-         find_symbol(handle, "oniUnregisterDeviceCallbacks", &api->unregister_device_callbacks, missing) &&
-         find_symbol(handle, "oniWaitForAnyStream", &api->wait_for_any_stream, missing) &&
-         find_symbol(handle, "oniDeviceOpen", &api->device_open, missing) &&
-         find_symbol(handle, "oniDeviceClose", &api->device_close, missing) &&
-         find_symbol(handle, "oniDeviceGetSensorInfo", &api->device_get_sensor_info, missing) &&
-         find_symbol(handle, "oniDeviceGetInfo", &api->device_get_info, missing) &&
-         find_symbol(handle, "oniDeviceCreateStream", &api->device_create_stream, missing) &&
-         find_symbol(handle, "oniDeviceEnableDepthColorSync", &api->device_enable_depth_color_sync, missing) &&
-         find_symbol(handle, "oniDeviceDisableDepthColorSync", &api->device_disable_depth_color_sync, missing) &&
-         find_symbol(handle, "oniDeviceGetDepthColorSyncEnabled", &api->device_get_depth_color_sync_enabled, missing) &&
-         find_symbol(handle, "oniDeviceGetProperty", &api->device_get_property, missing) &&
-         find_symbol(handle, "oniDeviceSetProperty", &api->device_set_property, missing) &&
-         find_symbol(handle, "oniDeviceIsImageRegistrationModeSupported", &api->device_is_image_registration_mode_supported, missing) &&
-         find_symbol(handle, "oniStreamDestroy", &api->stream_destroy, missing) &&
-         find_symbol(handle, "oniStreamStart", &api->stream_start, missing) &&
-         find_symbol(handle, "oniStreamStop", &api->stream_stop, missing) &&
-         find_symbol(handle, "oniStreamReadFrame", &api->stream_read_frame, missing) &&
-         find_symbol(handle, "oniStreamGetProperty", &api->stream_get_property, missing) &&
-         find_symbol(handle, "oniStreamSetProperty", &api->stream_set_property, missing) &&
-         find_symbol(handle, "oniFrameRelease", &api->frame_release, missing);
+/// The name of a function that the library lacks; nullptr where it has all.
+const char* find_functions(void* handle, Api* api) {
+#define CAMLOC_OPENNI2_FIND(name, symbol)                                      \
+  api->name = reinterpret_cast<decltype(api->name)>(::dlsym(handle, #symbol)); \
+  if (api->name == nullptr) return #symbol;
+  CAMLOC_OPENNI2_FUNCTIONS(CAMLOC_OPENNI2_FIND)
+#undef CAMLOC_OPENNI2_FIND
+  return nullptr;
 }
 
 Result<LoadedLibrary> load() {
@@ -72,8 +43,7 @@ Result<LoadedLibrary> load() {
   LoadedLibrary library;
   const link_map* map = nullptr;
   if (::dlinfo(handle, RTLD_DI_LINKMAP, &map) == 0 && map != nullptr && map->l_name != nullptr) library.path = map->l_name;
-  std::string missing;
-  if (!find_all(handle, &library.api, &missing)) {
+  if (const char* missing = find_functions(handle, &library.api); missing != nullptr) {
     return Status(ErrorCode::kUnsupported,
                   library.path + ": has no function " + missing + "; version 2.2 of OpenNI2 is expected, as in the package libopenni2-0");
   }
@@ -106,6 +76,11 @@ Shared& shared() {
 }
 
 }  // namespace
+
+std::string version_text(const OniVersion& version) {
+  return std::to_string(version.major) + "." + std::to_string(version.minor) + "." + std::to_string(version.maintenance) + "." +
+         std::to_string(version.build);
+}
 
 Result<const LoadedLibrary*> load_library() {
   static std::mutex mutex;

@@ -17,37 +17,41 @@
 
 namespace camloc::openni2 {
 
-/// The functions in use, by their names in OniCAPI.h.
+/// FUNCTION(name here, name in OniCAPI.h) for all in use.
+#define CAMLOC_OPENNI2_FUNCTIONS(FUNCTION)                                                         \
+  FUNCTION(initialize, oniInitialize)                                                              \
+  FUNCTION(shutdown, oniShutdown)                                                                  \
+  FUNCTION(get_version, oniGetVersion)                                                             \
+  FUNCTION(get_extended_error, oniGetExtendedError)                                                \
+  FUNCTION(set_log_console_output, oniSetLogConsoleOutput)                                         \
+  FUNCTION(set_log_file_output, oniSetLogFileOutput)                                               \
+  FUNCTION(get_device_list, oniGetDeviceList)                                                      \
+  FUNCTION(release_device_list, oniReleaseDeviceList)                                              \
+  FUNCTION(register_device_callbacks, oniRegisterDeviceCallbacks)                                  \
+  FUNCTION(unregister_device_callbacks, oniUnregisterDeviceCallbacks)                              \
+  FUNCTION(wait_for_any_stream, oniWaitForAnyStream)                                               \
+  FUNCTION(device_open, oniDeviceOpen)                                                             \
+  FUNCTION(device_close, oniDeviceClose)                                                           \
+  FUNCTION(device_get_sensor_info, oniDeviceGetSensorInfo)                                         \
+  FUNCTION(device_create_stream, oniDeviceCreateStream)                                            \
+  FUNCTION(device_enable_depth_color_sync, oniDeviceEnableDepthColorSync)                          \
+  FUNCTION(device_disable_depth_color_sync, oniDeviceDisableDepthColorSync)                        \
+  FUNCTION(device_get_depth_color_sync_enabled, oniDeviceGetDepthColorSyncEnabled)                 \
+  FUNCTION(device_get_property, oniDeviceGetProperty)                                              \
+  FUNCTION(device_set_property, oniDeviceSetProperty)                                              \
+  FUNCTION(device_is_image_registration_mode_supported, oniDeviceIsImageRegistrationModeSupported) \
+  FUNCTION(stream_destroy, oniStreamDestroy)                                                       \
+  FUNCTION(stream_start, oniStreamStart)                                                           \
+  FUNCTION(stream_stop, oniStreamStop)                                                             \
+  FUNCTION(stream_read_frame, oniStreamReadFrame)                                                  \
+  FUNCTION(stream_get_property, oniStreamGetProperty)                                              \
+  FUNCTION(stream_set_property, oniStreamSetProperty)                                              \
+  FUNCTION(frame_release, oniFrameRelease)
+
 struct Api {
-  decltype(&::oniInitialize) initialize = nullptr;
-  decltype(&::oniShutdown) shutdown = nullptr;
-  decltype(&::oniGetVersion) get_version = nullptr;
-  decltype(&::oniGetExtendedError) get_extended_error = nullptr;
-  decltype(&::oniSetLogConsoleOutput) set_log_console_output = nullptr;
-  decltype(&::oniSetLogFileOutput) set_log_file_output = nullptr;
-  decltype(&::oniGetDeviceList) get_device_list = nullptr;
-  decltype(&::oniReleaseDeviceList) release_device_list = nullptr;
-  decltype(&::oniRegisterDeviceCallbacks) register_device_callbacks = nullptr;
-  decltype(&::oniUnregisterDeviceCallbacks) unregister_device_callbacks = nullptr;
-  decltype(&::oniWaitForAnyStream) wait_for_any_stream = nullptr;
-  decltype(&::oniDeviceOpen) device_open = nullptr;
-  decltype(&::oniDeviceClose) device_close = nullptr;
-  decltype(&::oniDeviceGetSensorInfo) device_get_sensor_info = nullptr;
-  decltype(&::oniDeviceGetInfo) device_get_info = nullptr;
-  decltype(&::oniDeviceCreateStream) device_create_stream = nullptr;
-  decltype(&::oniDeviceEnableDepthColorSync) device_enable_depth_color_sync = nullptr;
-  decltype(&::oniDeviceDisableDepthColorSync) device_disable_depth_color_sync = nullptr;
-  decltype(&::oniDeviceGetDepthColorSyncEnabled) device_get_depth_color_sync_enabled = nullptr;
-  decltype(&::oniDeviceGetProperty) device_get_property = nullptr;
-  decltype(&::oniDeviceSetProperty) device_set_property = nullptr;
-  decltype(&::oniDeviceIsImageRegistrationModeSupported) device_is_image_registration_mode_supported = nullptr;
-  decltype(&::oniStreamDestroy) stream_destroy = nullptr;
-  decltype(&::oniStreamStart) stream_start = nullptr;
-  decltype(&::oniStreamStop) stream_stop = nullptr;
-  decltype(&::oniStreamReadFrame) stream_read_frame = nullptr;
-  decltype(&::oniStreamGetProperty) stream_get_property = nullptr;
-  decltype(&::oniStreamSetProperty) stream_set_property = nullptr;
-  decltype(&::oniFrameRelease) frame_release = nullptr;
+#define CAMLOC_OPENNI2_FIELD(name, symbol) decltype(&::symbol) name = nullptr;
+  CAMLOC_OPENNI2_FUNCTIONS(CAMLOC_OPENNI2_FIELD)
+#undef CAMLOC_OPENNI2_FIELD
 };
 
 /// A device as the library lists it.
@@ -58,6 +62,9 @@ struct DeviceEntry {
   int usb_vendor_id = 0;
   int usb_product_id = 0;
 };
+
+/// "2.2.0.33".
+[[nodiscard]] std::string version_text(const OniVersion& version);
 
 /// Where the code of the library is.
 struct LoadedLibrary {

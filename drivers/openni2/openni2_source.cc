@@ -151,10 +151,10 @@ class Openni2Source final : public FrameSource {
                     std::string(is_image ? "image" : "depth") + " frame " + std::to_string(raw.frameIndex) + ": " + why);
     };
     if (raw.data == nullptr || raw.dataSize <= 0 || raw.stride <= 0) return bad("empty");
-    if (raw.width != stream.mode.width || raw.height != stream.mode.height || raw.croppingEnabled != FALSE ||
-        raw.videoMode.pixelFormat != stream.mode.oni_pixel_format) {
+    if (raw.width != stream.mode.resolutionX || raw.height != stream.mode.resolutionY || raw.croppingEnabled != FALSE ||
+        raw.videoMode.pixelFormat != stream.mode.pixelFormat) {
       return bad(std::to_string(raw.width) + "x" + std::to_string(raw.height) + " in format " + std::to_string(raw.videoMode.pixelFormat) +
-                 " instead of " + describe(stream.mode));
+                 " instead of " + openni2::describe(stream.mode));
     }
     if (raw.timestamp > kMaxStampUs) return bad("stamp out of range");
     const RawImage pixels{{static_cast<const std::uint8_t*>(raw.data), static_cast<std::size_t>(raw.dataSize)},
@@ -252,10 +252,10 @@ FrameSourceInfo describe(const Device& device) {
   FrameSourceInfo info;
   info.description = device.description();
   info.serial = device.serial();
-  info.color_width = device.image().mode.width;
-  info.color_height = device.image().mode.height;
-  info.depth_width = device.depth().mode.width;
-  info.depth_height = device.depth().mode.height;
+  info.color_width = device.image().mode.resolutionX;
+  info.color_height = device.image().mode.resolutionY;
+  info.depth_width = device.depth().mode.resolutionX;
+  info.depth_height = device.depth().mode.resolutionY;
   info.camera = device.camera();
   info.stamp_clock = StampClock::kMonotonic;
   return info;

@@ -30,6 +30,7 @@ enum class PixelLayout : std::uint8_t {
 struct PixelFormat {
   PixelLayout layout = PixelLayout::kGray8;
   double depth_unit_m = 0;  ///< 0 for what is no depth
+  bool operator==(const PixelFormat& other) const = default;
 };
 
 /// Empty for formats that are not read: raw shifts (SHIFT_9_2, SHIFT_9_3), which need the device's own table.

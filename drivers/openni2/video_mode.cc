@@ -29,19 +29,19 @@ std::optional<int> format_rank(int oni_pixel_format, StreamUse use) {
 
 }  // namespace
 
-std::optional<VideoMode> choose_mode(const std::vector<VideoMode>& offered, StreamUse use, const ModeRequest& request) {
+std::optional<OniVideoMode> choose_mode(std::span<const OniVideoMode> offered, StreamUse use, const ModeRequest& request) {
   constexpr ModeRequest kUsual{640, 480, 30};
-  std::optional<VideoMode> best;
+  std::optional<OniVideoMode> best;
   std::tuple<int, int, int> best_rank;
-  for (const VideoMode& mode : offered) {
-    const std::optional<int> rank_of_format = format_rank(mode.oni_pixel_format, use);
-    if (!rank_of_format || mode.width <= 0 || mode.height <= 0 || mode.width > 16384 || mode.height > 16384 || mode.fps <= 0 ||
-        mode.fps > 1000)
+  for (const OniVideoMode& mode : offered) {
+    const std::optional<int> rank_of_format = format_rank(mode.pixelFormat, use);
+    if (!rank_of_format || mode.resolutionX <= 0 || mode.resolutionY <= 0 || mode.resolutionX > 16384 || mode.resolutionY > 16384 ||
+        mode.fps <= 0 || mode.fps > 1000)
       continue;
-    if ((request.width > 0 && mode.width != request.width) || (request.height > 0 && mode.height != request.height)) continue;
+    if ((request.width > 0 && mode.resolutionX != request.width) || (request.height > 0 && mode.resolutionY != request.height)) continue;
     if (request.fps > 0 && mode.fps != request.fps) continue;
-    const std::tuple rank(std::abs(mode.width - kUsual.width) + std::abs(mode.height - kUsual.height), std::abs(mode.fps - kUsual.fps),
-                          *rank_of_format);
+    const std::tuple rank(std::abs(mode.resolutionX - kUsual.width) + std::abs(mode.resolutionY - kUsual.height),
+                          std::abs(mode.fps - kUsual.fps), *rank_of_format);
     if (best && rank >= best_rank) continue;
     best = mode;
     best_rank = rank;
@@ -49,14 +49,14 @@ std::optional<VideoMode> choose_mode(const std::vector<VideoMode>& offered, Stre
   return best;
 }
 
-std::string describe(const VideoMode& mode) {
-  const std::optional<PixelFormat> format = pixel_format_of(mode.oni_pixel_format);
-  std::string pixels = "format " + std::to_string(mode.oni_pixel_format);
+std::string describe(const OniVideoMode& mode) {
+  const std::optional<PixelFormat> format = pixel_format_of(mode.pixelFormat);
+  std::string pixels = "format " + std::to_string(mode.pixelFormat);
   if (format) pixels = format->depth_unit_m <= 0 ? name_of(format->layout) : format->depth_unit_m > 5e-4 ? "in 1 mm" : "in 0.1 mm";
-  return std::to_string(mode.width) + "x" + std::to_string(mode.height) + "@" + std::to_string(mode.fps) + " " + pixels;
+  return std::to_string(mode.resolutionX) + "x" + std::to_string(mode.resolutionY) + "@" + std::to_string(mode.fps) + " " + pixels;
 }
 
-std::string describe(const std::vector<VideoMode>& modes) {
+std::string describe(std::span<const OniVideoMode> modes) {
   constexpr std::size_t kMostListed = 40;
   std::string list;
   for (std::size_t i = 0; i < modes.size() && i < kMostListed; ++i) list += (i == 0 ? "" : ", ") + describe(modes[i]);

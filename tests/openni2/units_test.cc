@@ -117,21 +117,25 @@ TEST(OniPixels, NeverReadsBeyondTheData) {
   EXPECT_EQ(to_gray({bytes, 2, 2, 4, PixelLayout::kDepth16, false}, &gray).code(), ErrorCode::kUnsupported);
 }
 
+OniVideoMode mode_of(int format, int width, int height, int fps) { return {static_cast<OniPixelFormat>(format), width, height, fps}; }
+
 TEST(OniModes, ChoosesTheUsualMode) {
-  const std::vector<VideoMode> offered{{101, 640, 480, 30}, {100, 320, 240, 60}, {100, 640, 480, 30},
-                                       {102, 640, 480, 30}, {200, 640, 480, 30}, {100, 1280, 1024, 15}};
-  const std::optional<VideoMode> mode = choose_mode(offered, StreamUse::kDepth, {});
+  const std::vector<OniVideoMode> offered{mode_of(101, 640, 480, 30), mode_of(100, 320, 240, 60), mode_of(100, 640, 480, 30),
+                                          mode_of(102, 640, 480, 30), mode_of(200, 640, 480, 30), mode_of(100, 1280, 1024, 15)};
+  const std::optional<OniVideoMode> mode = choose_mode(offered, StreamUse::kDepth, {});
   ASSERT_TRUE(mode);
   EXPECT_EQ(describe(*mode), "640x480@30 in 1 mm");
 }
 
 TEST(OniModes, ObeysTheRequestOrRefuses) {
-  const std::vector<VideoMode> offered{{200, 640, 480, 30}, {201, 320, 240, 60}, {205, 320, 240, 30}, {204, 1280, 1024, 30}};
+  const std::vector<OniVideoMode> offered{mode_of(200, 640, 480, 30), mode_of(201, 320, 240, 60), mode_of(205, 320, 240, 30),
+                                          mode_of(204, 1280, 1024, 30)};
+  const std::vector<OniVideoMode> nonsense{mode_of(200, 0, 480, 30), mode_of(200, 640, 480, 0), mode_of(200, 1 << 30, 480, 30)};
   EXPECT_EQ(describe(*choose_mode(offered, StreamUse::kImage, {320, 240, 0})), "320x240@30 YUYV");
   EXPECT_EQ(describe(*choose_mode(offered, StreamUse::kImage, {0, 0, 60})), "320x240@60 YUV422");
   EXPECT_FALSE(choose_mode(offered, StreamUse::kImage, {1280, 1024, 0}));  // JPEG alone
   EXPECT_FALSE(choose_mode(offered, StreamUse::kDepth, {}));
-  EXPECT_FALSE(choose_mode({{200, 0, 480, 30}, {200, 640, 480, 0}, {200, 1 << 30, 480, 30}}, StreamUse::kImage, {}));
+  EXPECT_FALSE(choose_mode(nonsense, StreamUse::kImage, {}));
 }
 
 TEST(OniFieldOfView, RefusesWhatIsNoCamera) {
@@ -161,14 +165,13 @@ TEST(OniListing, SaysWhichPartOfTheInstallationIsMissing) {
   openni2.is_library_found = openni2.is_started = true;
   openni2.problem = "";
   openni2.drivers_folder = "/usr/lib/OpenNI2/Drivers";
-  openni2.drivers = {{"libPS1080.so.0", false, "cannot be loaded"}};
-  expect("no driver in /usr/lib/OpenNI2/Drivers", "lib*.so.0");
-  openni2.drivers[0] = {"libPS1080.so.0", true, ""};
+  expect("/usr/lib/OpenNI2/Drivers: no driver was loaded from here", "lib*.so.0");
+  openni2.num_drivers = 1;
   openni2.version = "2.2.0.33";
   const CameraListing none = expect("", "kinect://");
   EXPECT_TRUE(none.cameras.empty());
   EXPECT_EQ(none.searched, "OpenNI2 2.2.0.33, 1 drivers in /usr/lib/OpenNI2/Drivers");
-  openni2.devices = {{"1d27/0601@1/4", "PrimeSense", "Xtion", "1d27:0601"}};
+  openni2.cameras = {{"openni2://1d27/0601@1/4", "PrimeSense Xtion", "USB id 1d27:0601", ""}};
   const CameraListing listing = expect("", "");
   ASSERT_EQ(listing.cameras.size(), 1U);
   EXPECT_EQ(listing.cameras[0].url, "openni2://1d27/0601@1/4");
