@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/base/frame.h"
 #include "core/base/result.h"
@@ -61,6 +62,24 @@ class FrameSource {
   [[nodiscard]] virtual Status restart() { return {ErrorCode::kUnsupported, "this source cannot be restarted"}; }
   /// Resets the device as if it were unplugged and plugged in. Afterwards the source is of no use: open again.
   [[nodiscard]] virtual Status reset_device() { return {ErrorCode::kUnsupported, "this source cannot reset its device"}; }
+};
+
+// ---- what a driver says about the cameras that are plugged in, for people and for choosing one
+
+/// A camera that is plugged in.
+struct FoundCamera {
+  std::string url;      ///< that opens it
+  std::string name;     ///< for people
+  std::string where;    ///< on which bus or node
+  std::string problem;  ///< why it cannot be asked, one line; empty where it can
+};
+
+/// What there is of one kind of camera now. Nothing is opened for streaming.
+struct CameraListing {
+  std::vector<FoundCamera> cameras;
+  std::string searched;  ///< what was looked at: "5 USB devices"
+  std::string problem;   ///< why cameras may be missing here, one line; empty where nothing is wrong
+  std::string advice;    ///< what to do when one is missing, with the command where there is one
 };
 
 }  // namespace camloc

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// See sample_source.h.
 #include "drivers/sample_source.h"
 
 #include <algorithm>
@@ -10,7 +8,7 @@
 #include <random>
 #include <utility>
 
-#include "drivers/pacer.h"
+#include "drivers/playback.h"
 
 namespace camloc {
 
@@ -150,20 +148,18 @@ void SampleRoom::render(const RgbdCamera& camera, const Rigid3& T_map_camera, Fr
 Result<std::unique_ptr<FrameSource>> open_sample_source(const SourceUrl& url, const FrameSourceOptions& /*options*/) {
   if (Status status = url.check_options({"rate_hz", "frames", "width", "height"}); !status) return status;
   if (!url.path.empty() && url.path != "/") return Status(ErrorCode::kInvalid, url.text + ": sample:// takes no path, only options");
-  const Result<double> rate_hz = url.number_option("rate_hz", 30, 0, 10000);
-  const Result<double> frames = url.number_option("frames", 0, 0, 1e12);
-  const Result<double> width = url.number_option("width", 640, 16, 4096);
-  const Result<double> height = url.number_option("height", 480, 16, 4096);
-  for (const Result<double>* option : {&rate_hz, &frames, &width, &height}) {
-    if (!*option) return option->status();
-  }
+  OptionReader options(url);
+  const double rate_hz = options.number("rate_hz", 30, 0, 10000);
+  const double frames = options.number("frames", 0, 0, 1e12);
+  const double width = options.number("width", 640, 16, 4096), height = options.number("height", 480, 16, 4096);
+  if (!options.status()) return options.status();
   FrameSourceInfo info;
-  info.camera = sample_camera(static_cast<int>(*width), static_cast<int>(*height));
+  info.camera = sample_camera(static_cast<int>(width), static_cast<int>(height));
   info.color_width = info.depth_width = info.camera->color.width;
   info.color_height = info.depth_height = info.camera->color.height;
-  if (*frames > 0) info.num_frames = static_cast<std::uint64_t>(*frames);
+  if (frames > 0) info.num_frames = static_cast<std::uint64_t>(frames);
   info.description = "generated images of a room, " + std::to_string(info.color_width) + "x" + std::to_string(info.color_height);
-  return std::unique_ptr<FrameSource>(std::make_unique<SampleSource>(std::move(info), *rate_hz));
+  return std::unique_ptr<FrameSource>(std::make_unique<SampleSource>(std::move(info), rate_hz));
 }
 
 }  // namespace camloc

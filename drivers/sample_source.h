@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// sample://: images of a textured room seen by a camera that walks a closed path, generated, with exact depth and known
+// sample://: images of a textured room seen by a camera on a closed path, generated, with exact depth and known
 // poses. For trying the pipe without a device or data, and for tests; no model of a real sensor (see camloc-sim).
 #pragma once
 

@@ -1,14 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// See source_url.h.
 #include "drivers/source_url.h"
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <optional>
 
 #include "core/io/text.h"
 
@@ -85,6 +82,32 @@ Status SourceUrl::check_options(const std::vector<std::string>& known) const {
     return {ErrorCode::kInvalid, text + ": unknown option " + in_quotes(key) + "; " + scheme + ":// knows " + list};
   }
   return Status::ok();
+}
+
+double OptionReader::number(const std::string& key, double fallback, double low, double high) {
+  const Result<double> value = url_.number_option(key, fallback, low, high);
+  if (!value && status_) status_ = value.status();
+  return value ? *value : fallback;
+}
+
+int OptionReader::whole(const std::string& key, int fallback, int low, int high) {
+  const double value = number(key, fallback, low, high);
+  if (value != std::floor(value)) fail(key, "expected a whole number");
+  return static_cast<int>(value);
+}
+
+std::optional<double> OptionReader::given_number(const std::string& key, double low, double high) {
+  return has(key) ? std::optional(number(key, low, low, high)) : std::nullopt;
+}
+
+bool OptionReader::flag(const std::string& key) {
+  const std::string value = url_.text_option(key, "0");
+  if (value != "0" && value != "1") fail(key, "expected 0 or 1");
+  return value == "1";
+}
+
+void OptionReader::fail(const std::string& key, const std::string& expected) {
+  if (status_) status_ = {ErrorCode::kInvalid, url_.text + ": option " + key + "=" + url_.text_option(key, "") + ": " + expected};
 }
 
 Result<SourceUrl> parse_source_url(std::string_view url) {

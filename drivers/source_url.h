@@ -5,6 +5,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,26 @@ struct SourceUrl {
   [[nodiscard]] Result<double> number_option(const std::string& key, double fallback, double low, double high) const;
   /// An error for the first option that is not among `known`; it lists them.
   [[nodiscard]] Status check_options(const std::vector<std::string>& known) const;
+};
+
+/// Takes the options of a URL one by one; the first value that is wrong decides status().
+class OptionReader {
+ public:
+  explicit OptionReader(const SourceUrl& url) : url_(url) {}
+  [[nodiscard]] bool has(const std::string& key) const { return url_.options.contains(key); }
+  /// See SourceUrl::number_option(); the fallback where the value is wrong, too.
+  double number(const std::string& key, double fallback, double low, double high);
+  int whole(const std::string& key, int fallback, int low, int high);
+  /// 0 or 1; false where it is not given.
+  bool flag(const std::string& key);
+  /// Nothing where it is not given or not in [low, high].
+  std::optional<double> given_number(const std::string& key, double low, double high);
+  void fail(const std::string& key, const std::string& expected);
+  [[nodiscard]] const Status& status() const { return status_; }
+
+ private:
+  const SourceUrl& url_;
+  Status status_;
 };
 
 /// %XX is decoded in path and values of a URL with a scheme. A bare path is taken to the letter up to its first '?' and

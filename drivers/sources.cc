@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// See sources.h. A new device adds its line here and nothing else.
+// A new device adds its line here and nothing else.
 #include "drivers/sources.h"
 
 #include <algorithm>

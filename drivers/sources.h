@@ -11,7 +11,6 @@
 #include <string>
 
 #include "core/base/result.h"
-#include "drivers/camera_listing.h"
 #include "drivers/frame_source.h"
 #include "drivers/source_url.h"
 #include "drivers/usb_devices.h"

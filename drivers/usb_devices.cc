@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
-#include <optional>
 #include <tuple>
 
 #include "core/io/text.h"
@@ -42,7 +40,20 @@ std::vector<std::string> drivers_of(const fs::path& folder, const std::string& n
   return drivers;
 }
 
-std::optional<UsbDevice> read_device(const fs::path& folder) {
+}  // namespace
+
+std::string read_system_attribute(const fs::path& path) {
+  std::ifstream file(path);
+  char text[256] = {};
+  file.read(text, sizeof(text) - 1);
+  const std::string_view line = std::string_view(text).substr(0, std::string_view(text).find('\n'));
+  std::string result(trimmed(line));
+  std::replace_if(
+      result.begin(), result.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
+  return result;
+}
+
+std::optional<UsbDevice> read_usb_device(const fs::path& folder) {
   const auto vendor = read_hex(folder / "idVendor"), product = read_hex(folder / "idProduct");
   const auto bus = parse_int(read_system_attribute(folder / "busnum")), address = parse_int(read_system_attribute(folder / "devnum"));
   if (!vendor || !product || !bus || !address || *bus < 1 || *bus > 999 || *address < 1 || *address > 127) return std::nullopt;
@@ -56,19 +67,6 @@ std::optional<UsbDevice> read_device(const fs::path& folder) {
   device.speed_mbps = parse_double(read_system_attribute(folder / "speed")).value_or(0);
   device.drivers = drivers_of(folder, device.name);
   return device;
-}
-
-}  // namespace
-
-std::string read_system_attribute(const fs::path& path) {
-  std::ifstream file(path);
-  char text[256] = {};
-  file.read(text, sizeof(text) - 1);
-  const std::string_view line = std::string_view(text).substr(0, std::string_view(text).find('\n'));
-  std::string result(trimmed(line));
-  std::replace_if(
-      result.begin(), result.end(), [](unsigned char c) { return c < 32 || c == 127; }, '?');
-  return result;
 }
 
 std::string UsbDevice::node() const {
@@ -93,7 +91,7 @@ std::vector<UsbDevice> list_usb_devices(const SystemFolders& folders) {
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folders.path("/sys/bus/usb/devices"), error)) {
     if (devices.size() == kMaxDevices) break;
-    if (auto device = read_device(entry.path())) devices.push_back(std::move(*device));
+    if (auto device = read_usb_device(entry.path())) devices.push_back(std::move(*device));
   }
   std::sort(devices.begin(), devices.end(),
             [](const UsbDevice& a, const UsbDevice& b) { return std::tie(a.bus, a.address) < std::tie(b.bus, b.address); });

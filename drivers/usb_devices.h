@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,9 @@ struct UsbId {
 
 /// Some devices of a kind all say 0000000000000000.
 [[nodiscard]] inline bool is_placeholder_serial(const std::string& serial) { return serial.find_first_not_of('0') == std::string::npos; }
+
+/// From its folder below /sys/devices; nullopt where that is none of a USB device.
+[[nodiscard]] std::optional<UsbDevice> read_usb_device(const std::filesystem::path& folder);
 
 /// In the order of bus and address; hubs are among them. Empty where there is no USB.
 [[nodiscard]] std::vector<UsbDevice> list_usb_devices(const SystemFolders& folders = {});

@@ -1,12 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// See kinect_calibration.h.
 #include "drivers/kinect/kinect_calibration.h"
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 #include "drivers/kinect/kinect_protocol.h"
 
@@ -43,13 +40,9 @@ std::optional<RegistrationBlock> parse_registration(std::span<const std::uint8_t
   if (std::all_of(body.begin() + 2, body.begin() + kRegistrationBodyBytes, [](std::uint8_t byte) { return byte == 0; }))
     return std::nullopt;
   const auto number = [body](std::size_t index) { return static_cast<std::int32_t>(double_word_at(body, 2 + 4 * index)); };
-  RegistrationBlock block;
-  block.ax = number(1), block.bx = number(2), block.cx = number(3), block.dx = number(4), block.dx_start = number(5);
-  block.ay = number(6), block.by = number(7), block.cy = number(8), block.dy = number(9), block.dy_start = number(10);
-  block.dxdx_start = number(17), block.dxdy_start = number(18), block.dydx_start = number(19), block.dydy_start = number(20);
-  block.dxdxdx_start = number(21), block.dydxdx_start = number(22), block.dxdxdy_start = number(23), block.dydxdy_start = number(24);
-  block.dydydx_start = number(26), block.dydydy_start = number(28);
-  return block;
+  return RegistrationBlock{
+      {number(1), number(2), number(3), number(4), number(5), number(17), number(19), number(21), number(22), number(26)},
+      {number(6), number(7), number(8), number(9), number(10), number(18), number(20), number(23), number(24), number(28)}};
 }
 
 std::optional<int> parse_const_shift(std::span<const std::uint8_t> body) {

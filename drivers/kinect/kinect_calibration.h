@@ -26,13 +26,16 @@ struct ZeroPlane {
   [[nodiscard]] double focal_px() const { return reference_distance_cm / (2 * pixel_size_cm); }
 };
 
-/// Coefficients of two polynomials of third degree over the depth image, in fixed point and as forward differences: the
-/// displacement of a pixel at infinite depth, see kinect_registration.cc.
+/// Coefficients of a polynomial of third degree over the depth image, in fixed point and as forward differences, see
+/// kinect_depth.cc.
+struct RegistrationAxis {
+  std::int32_t a = 0, b = 0, c = 0, d = 0, start = 0;
+  std::int32_t dx_start = 0, dy_start = 0, dxdx_start = 0, dydx_start = 0, dydy_start = 0;
+};
+
+/// The displacement of a pixel at infinite depth.
 struct RegistrationBlock {
-  std::int32_t ax = 0, bx = 0, cx = 0, dx = 0, dx_start = 0;
-  std::int32_t ay = 0, by = 0, cy = 0, dy = 0, dy_start = 0;
-  std::int32_t dxdx_start = 0, dxdy_start = 0, dydx_start = 0, dydy_start = 0;
-  std::int32_t dxdxdx_start = 0, dydxdx_start = 0, dxdxdy_start = 0, dydxdy_start = 0, dydydx_start = 0, dydydy_start = 0;
+  RegistrationAxis x, y;
 };
 
 struct KinectCalibration {

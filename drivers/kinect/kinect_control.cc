@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// See kinect_control.h.
 #include "drivers/kinect/kinect_control.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -22,12 +21,32 @@ std::string hexadecimal(std::uint16_t value) {
   return text;
 }
 
-struct RegisterValue {
-  Register address;
-  std::uint16_t value;
-};
-
 }  // namespace
+
+ControlRequest encode_request(Command command, std::uint16_t tag, std::span<const std::uint16_t> body) {
+  assert(body.size() <= kMaxRequestWords);
+  ControlRequest request;
+  const auto put = [&request](std::size_t word) {
+    request.bytes[request.size++] = static_cast<std::uint8_t>(word & 0xff);
+    request.bytes[request.size++] = static_cast<std::uint8_t>(word >> 8 & 0xff);
+  };
+  put('G' | 'M' << 8);
+  put(body.size());
+  put(static_cast<std::uint16_t>(command));
+  put(tag);
+  for (const std::uint16_t word : body) put(word);
+  return request;
+}
+
+ControlReply parse_reply(std::span<const std::uint8_t> bytes, Command command, std::uint16_t tag) {
+  if (bytes.empty() || bytes.size() >= kMaxControlBytes) return {ReplyState::kNone, {}};
+  if (bytes.size() < kControlHeaderBytes || bytes[0] != 'R' || bytes[1] != 'B') return {ReplyState::kCorrupt, {}};
+  const std::size_t body_bytes = 2U * word_at(bytes, 2);
+  if (word_at(bytes, 6) != tag) return {ReplyState::kStale, {}};
+  if (word_at(bytes, 4) != static_cast<std::uint16_t>(command)) return {ReplyState::kCorrupt, {}};
+  if (kControlHeaderBytes + body_bytes > bytes.size()) return {ReplyState::kCorrupt, {}};
+  return {ReplyState::kOk, bytes.subspan(kControlHeaderBytes, body_bytes)};
+}
 
 Result<std::span<const std::uint8_t>> KinectControl::attempt(Command command, std::span<const std::uint16_t> body,
                                                              std::size_t min_body_bytes) {
@@ -73,29 +92,30 @@ Status KinectControl::write_register(Register address, std::uint16_t value) {
   return Status::ok();
 }
 
-Status KinectControl::start_color() {
-  for (const auto& [address, value] : {RegisterValue{Register::kColorStream, 0},
-                                       {Register::kColorFormat, 0},
-                                       {Register::kColorResolution, kResolution640},
-                                       {Register::kColorRate, kFrameRateHz},
-                                       {Register::kColorStream, 1},
-                                       {Register::kColorMirror, 0}}) {
+Status KinectControl::write_registers(std::initializer_list<std::pair<Register, std::uint16_t>> values) {
+  for (const auto& [address, value] : values) {
     if (Status status = write_register(address, value); !status) return status;
   }
   return Status::ok();
 }
 
+Status KinectControl::start_color() {
+  return write_registers({{Register::kColorStream, 0},
+                          {Register::kColorFormat, 0},
+                          {Register::kColorResolution, kResolution640},
+                          {Register::kColorRate, kFrameRateHz},
+                          {Register::kColorStream, 1},
+                          {Register::kColorMirror, 0}});
+}
+
 Status KinectControl::start_depth() {
-  for (const auto& [address, value] : {RegisterValue{Register::kProjectorCycle, 0},
-                                       {Register::kDepthStream, 0},
-                                       {Register::kDepthFormat, 3},
-                                       {Register::kDepthResolution, kResolution640},
-                                       {Register::kDepthRate, kFrameRateHz},
-                                       {Register::kDepthStream, 2},
-                                       {Register::kDepthMirror, 0}}) {
-    if (Status status = write_register(address, value); !status) return status;
-  }
-  return Status::ok();
+  return write_registers({{Register::kProjectorCycle, 0},
+                          {Register::kDepthStream, 0},
+                          {Register::kDepthFormat, 3},
+                          {Register::kDepthResolution, kResolution640},
+                          {Register::kDepthRate, kFrameRateHz},
+                          {Register::kDepthStream, 2},
+                          {Register::kDepthMirror, 0}});
 }
 
 Result<std::span<const std::uint8_t>> KinectControl::algorithm_parameter(AlgorithmParameter parameter, std::size_t bytes) {
@@ -163,25 +183,27 @@ Status KinectControl::set_color_1414(const ColorControls& controls) {
 
 // ---- colour sensor of model 1473 and K4W
 
-Status KinectControl::write_control_word(std::uint16_t control, std::uint16_t value) {
-  const std::uint16_t write[] = {1, control, value}, read[] = {1, kControlReadWord, control};
+Result<bool> KinectControl::set_control(std::span<const std::uint16_t> write, std::span<const std::uint16_t> read, std::uint16_t value) {
   if (const auto reply = command(Command::kCameraControl, write, 2); !reply) return reply.status();
   const auto reply = command(Command::kCameraControl, read, 8);
   if (!reply) return reply.status();
-  if (reply->size() < 8 || word_at(*reply, 6) != value)
-    return {ErrorCode::kUnsupported, "this Kinect ignores colour control " + hexadecimal(control)};
-  return Status::ok();
+  return reply->size() >= 8 && word_at(*reply, 6) == value;
+}
+
+Status KinectControl::write_control_word(std::uint16_t control, std::uint16_t value) {
+  const std::uint16_t write[] = {1, control, value}, read[] = {1, kControlReadWord, control};
+  const Result<bool> is_set = set_control(write, read, value);
+  if (!is_set || *is_set) return is_set.status();
+  return {ErrorCode::kUnsupported, "this Kinect ignores colour control " + hexadecimal(control)};
 }
 
 Status KinectControl::set_exposure_mode(bool is_automatic) {
   const std::uint16_t mode = is_automatic ? kAutomatic : kManual;
   const std::uint16_t write[] = {2, kControlWriteByte, kControlExposureMode, kControlByteValue, mode};
   const std::uint16_t read[] = {1, kControlReadByte, kControlExposureMode};
-  if (const auto reply = command(Command::kCameraControl, write, 2); !reply) return reply.status();
-  const auto reply = command(Command::kCameraControl, read, 8);
-  if (!reply) return reply.status();
-  if (reply->size() < 8 || word_at(*reply, 6) != mode) return {ErrorCode::kUnsupported, "this Kinect does not change its exposure mode"};
-  return Status::ok();
+  const Result<bool> is_set = set_control(write, read, mode);
+  if (!is_set || *is_set) return is_set.status();
+  return {ErrorCode::kUnsupported, "this Kinect does not change its exposure mode"};
 }
 
 Status KinectControl::set_color_1473(const ColorControls& controls) {

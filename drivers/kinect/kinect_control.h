@@ -7,14 +7,37 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "core/base/result.h"
 #include "drivers/kinect/kinect_calibration.h"
 #include "drivers/kinect/kinect_protocol.h"
 
 namespace camloc::kinect {
+
+/// Bytes of a request, ready to be sent.
+struct ControlRequest {
+  std::array<std::uint8_t, kControlHeaderBytes + 2 * kMaxRequestWords> bytes{};
+  std::size_t size = 0;
+};
+/// `body` has at most kMaxRequestWords words.
+[[nodiscard]] ControlRequest encode_request(Command command, std::uint16_t tag, std::span<const std::uint16_t> body);
+
+enum class ReplyState : std::uint8_t {
+  kNone,     ///< empty, or as long as the buffer: the device is not ready yet [FN]
+  kStale,    ///< answers an earlier request
+  kCorrupt,  ///< not a reply at all: wrong magic, or lengths that contradict each other
+  kOk,
+};
+struct ControlReply {
+  ReplyState state = ReplyState::kNone;
+  std::span<const std::uint8_t> body;  ///< points into the bytes that were parsed
+};
+/// Bytes behind the body that the header announces are ignored.
+[[nodiscard]] ControlReply parse_reply(std::span<const std::uint8_t> bytes, Command command, std::uint16_t tag);
 
 /// Carries the vendor requests of the camera (see kinect_protocol.h).
 class ControlTransport {
@@ -65,6 +88,9 @@ class KinectControl {
  private:
   [[nodiscard]] Result<std::span<const std::uint8_t>> attempt(Command command, std::span<const std::uint16_t> body,
                                                               std::size_t min_body_bytes);
+  [[nodiscard]] Status write_registers(std::initializer_list<std::pair<Register, std::uint16_t>> values);
+  /// Sends `write`, then `read`; false where the answer to that is not `value`.
+  [[nodiscard]] Result<bool> set_control(std::span<const std::uint16_t> write, std::span<const std::uint16_t> read, std::uint16_t value);
   [[nodiscard]] Result<std::uint16_t> read_sensor(std::uint16_t address);
   [[nodiscard]] Status write_sensor(std::uint16_t address, std::uint16_t value, std::uint16_t mask);
   [[nodiscard]] Status set_sensor_mode(std::uint16_t bit, bool is_on);

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// See kinect_list.h.
 #include "drivers/kinect/kinect_list.h"
 
 #include <algorithm>
@@ -10,15 +8,12 @@ namespace camloc {
 
 namespace {
 
-bool is_audio(const UsbDevice& device) {
-  const auto& products = kinect::kProductsAudio;
-  return device.vendor == kinect::kVendorMicrosoft && std::find(products.begin(), products.end(), device.product) != products.end();
-}
-
 std::string serial_of(const UsbDevice& camera, const std::vector<UsbDevice>& devices) {
   if (!is_placeholder_serial(camera.serial)) return camera.serial;
+  const auto& audio = kinect::kProductsAudio;
   for (const UsbDevice& device : devices) {
-    if (is_audio(device) && device.hub() == camera.hub() && !is_placeholder_serial(device.serial)) return device.serial;
+    const bool is_audio = device.vendor == kinect::kVendorMicrosoft && std::find(audio.begin(), audio.end(), device.product) != audio.end();
+    if (is_audio && device.hub() == camera.hub() && !is_placeholder_serial(device.serial)) return device.serial;
   }
   return "";
 }

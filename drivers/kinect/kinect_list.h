@@ -4,7 +4,7 @@
 // Which Kinects are plugged in, by what the kernel says: nothing is opened.
 #pragma once
 
-#include "drivers/camera_listing.h"
+#include "drivers/frame_source.h"
 #include "drivers/kinect/kinect_protocol.h"
 #include "drivers/usb_devices.h"
 

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// See kinect_motor.h.
 #include "drivers/kinect/kinect_motor.h"
 
 #include <algorithm>
@@ -36,10 +34,7 @@ std::unique_ptr<KinectMotor> KinectMotor::open(libusb_context* context, libusb_d
 }
 
 KinectMotor::KinectMotor(UsbHandle handle)
-    : handle_(std::move(handle)), state_request_(std::make_unique<Request>()), led_request_(std::make_unique<Request>()) {
-  state_request_->transfer.reset(libusb_alloc_transfer(0));
-  led_request_->transfer.reset(libusb_alloc_transfer(0));
-}
+    : handle_(std::move(handle)), state_request_(std::make_unique<Request>()), led_request_(std::make_unique<Request>()) {}
 
 KinectMotor::~KinectMotor() {
   constexpr std::chrono::milliseconds kGrace{100};  // for a last word to the LED; what is not through by then is cancelled
@@ -76,7 +71,8 @@ bool KinectMotor::submit(Request* request, std::uint8_t direction, std::uint8_t 
 
 void KinectMotor::set_led(Led led) {
   if (led_ == led) return;
-  if (submit(led_request_.get(), kVendorOut, kMotorSetLed, static_cast<std::uint16_t>(led), 0, &KinectMotor::on_led)) led_ = led;
+  const auto on_led = [](libusb_transfer* transfer) { static_cast<KinectMotor*>(transfer->user_data)->led_request_->is_busy = false; };
+  if (submit(led_request_.get(), kVendorOut, kMotorSetLed, static_cast<std::uint16_t>(led), 0, on_led)) led_ = led;
 }
 
 void KinectMotor::poll() {
@@ -96,11 +92,6 @@ void LIBUSB_CALL KinectMotor::on_state(libusb_transfer* transfer) {
     motor->acceleration_ = acceleration;
   }
   motor->state_request_->is_busy = false;
-}
-
-void LIBUSB_CALL KinectMotor::on_led(libusb_transfer* transfer) {
-  auto* const motor = static_cast<KinectMotor*>(transfer->user_data);
-  motor->led_request_->is_busy = false;
 }
 
 std::optional<Eigen::Vector3d> KinectMotor::acceleration() const {

@@ -52,7 +52,7 @@ class KinectMotor {
 
   /// An asynchronous control transfer with its buffer.
   struct Request {
-    std::unique_ptr<libusb_transfer, void (*)(libusb_transfer*)> transfer{nullptr, libusb_free_transfer};
+    UsbTransfer transfer{libusb_alloc_transfer(0)};
     std::array<std::uint8_t, LIBUSB_CONTROL_SETUP_SIZE + kMotorStateBytes> buffer{};
     std::atomic<bool> is_busy{false};
   };
@@ -60,7 +60,6 @@ class KinectMotor {
   [[nodiscard]] bool submit(Request* request, std::uint8_t direction, std::uint8_t request_code, std::uint16_t value, std::uint16_t length,
                             libusb_transfer_cb_fn callback);
   static void LIBUSB_CALL on_state(libusb_transfer* transfer);
-  static void LIBUSB_CALL on_led(libusb_transfer* transfer);
 
   UsbHandle handle_;
   std::unique_ptr<Request> state_request_, led_request_;

@@ -1,13 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// See kinect_packets.h.
 #include "drivers/kinect/kinect_packets.h"
 
 #include <cassert>
 #include <cstring>
-
-#include "drivers/kinect/kinect_protocol.h"
 
 namespace camloc::kinect {
 
@@ -24,9 +20,6 @@ std::optional<PacketHeader> parse_packet_header(std::span<const std::uint8_t> pa
   if (packet.size() < kPacketHeaderBytes || packet[0] != 'R' || packet[1] != 'B') return std::nullopt;
   return PacketHeader{packet[3], packet[5], double_word_at(packet, 8)};
 }
-
-StreamLayout color_layout() { return {kColorFlagBase, kColorFrameBytes, kColorPayloadBytes}; }
-StreamLayout depth_layout() { return {kDepthFlagBase, kDepthFrameBytes, kDepthPayloadBytes}; }
 
 FrameAssembler::FrameAssembler(const StreamLayout& layout) : layout_(layout), num_places_(layout.packets_per_frame()) {
   assert(num_places_ >= 2 && num_places_ < kMaxPackets);
@@ -101,8 +94,7 @@ PacketResult FrameAssembler::push(std::span<const std::uint8_t> packet, std::int
   const std::optional<PacketHeader> header = parse_packet_header(packet);
   const std::uint8_t kind = header ? static_cast<std::uint8_t>(header->flag - layout_.flag_base) : 0;
   if (!header || (kind != kFlagStart && kind != kFlagMiddle && kind != kFlagEnd)) {
-    ++counts_.malformed;  // its number is not to be trusted; the gap that it leaves is counted with the next packet
-    return PacketResult::kNothing;
+    return PacketResult::kNothing;  // its number is not to be trusted; the gap that it leaves is counted with the next packet
   }
   ++counts_.packets;
   const std::span<const std::uint8_t> payload = packet.subspan(kPacketHeaderBytes);

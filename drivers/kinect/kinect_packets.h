@@ -17,6 +17,8 @@
 #include <optional>
 #include <span>
 
+#include "drivers/kinect/kinect_protocol.h"
+
 namespace camloc::kinect {
 
 struct PacketHeader {
@@ -33,13 +35,12 @@ struct StreamLayout {
   std::size_t payload_bytes = 0;
   [[nodiscard]] std::size_t packets_per_frame() const { return (frame_bytes + payload_bytes - 1) / payload_bytes; }
 };
-[[nodiscard]] StreamLayout color_layout();
-[[nodiscard]] StreamLayout depth_layout();
+[[nodiscard]] constexpr StreamLayout color_layout() { return {kColorFlagBase, kColorFrameBytes, kColorPayloadBytes}; }
+[[nodiscard]] constexpr StreamLayout depth_layout() { return {kDepthFlagBase, kDepthFrameBytes, kDepthPayloadBytes}; }
 
 struct PacketCounts {
-  std::uint64_t packets = 0;    ///< that were of this stream
-  std::uint64_t lost = 0;       ///< by the gaps in the sequence numbers
-  std::uint64_t malformed = 0;  ///< no header or a foreign flag
+  std::uint64_t packets = 0;  ///< that were of this stream
+  std::uint64_t lost = 0;     ///< by the gaps in the sequence numbers
   std::uint64_t duplicates = 0;
   std::uint64_t late = 0;  ///< came after a successor, in time for their place or not
   std::uint64_t frames_complete = 0;

@@ -29,7 +29,6 @@ inline constexpr std::uint16_t kVendorMicrosoft = 0x045e;
 inline constexpr std::uint16_t kProductCamera = 0x02ae;     ///< Xbox 360 models 1414 and 1473
 inline constexpr std::uint16_t kProductCameraK4w = 0x02bf;  ///< Kinect for Windows V1
 inline constexpr std::uint16_t kProductMotor = 0x02b0;
-inline constexpr std::uint16_t kProductHub = 0x02c2;  ///< of K4W
 inline constexpr std::array<std::uint16_t, 4> kProductsAudio{0x02ad, 0x02bb, 0x02be, 0x02c3};
 /// bcdDevice of model 1414's camera; 1473 has the same product number and another release [FN].
 inline constexpr std::uint16_t kReleaseOf1414 = 0x010b;
@@ -88,27 +87,6 @@ inline constexpr std::uint16_t kControlWriteByte = 0xff80, kControlByteValue = 0
 inline constexpr std::size_t kControlHeaderBytes = 8;
 inline constexpr std::size_t kMaxControlBytes = 512;
 inline constexpr std::size_t kMaxRequestWords = 16;
-
-/// Bytes of a request, ready to be sent.
-struct ControlRequest {
-  std::array<std::uint8_t, kControlHeaderBytes + 2 * kMaxRequestWords> bytes{};
-  std::size_t size = 0;
-};
-/// `body` has at most kMaxRequestWords words.
-[[nodiscard]] ControlRequest encode_request(Command command, std::uint16_t tag, std::span<const std::uint16_t> body);
-
-enum class ReplyState : std::uint8_t {
-  kNone,     ///< empty, or as long as the buffer: the device is not ready yet [FN]
-  kStale,    ///< answers an earlier request
-  kCorrupt,  ///< not a reply at all: wrong magic, or lengths that contradict each other
-  kOk,
-};
-struct ControlReply {
-  ReplyState state = ReplyState::kNone;
-  std::span<const std::uint8_t> body;  ///< points into the bytes that were parsed
-};
-/// Bytes behind the body that the header announces are ignored.
-[[nodiscard]] ControlReply parse_reply(std::span<const std::uint8_t> bytes, Command command, std::uint16_t tag);
 
 [[nodiscard]] inline std::uint16_t word_at(std::span<const std::uint8_t> bytes, std::size_t offset) {
   return static_cast<std::uint16_t>(bytes[offset] | bytes[offset + 1] << 8);

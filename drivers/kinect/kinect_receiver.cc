@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// See kinect_receiver.h.
 #include "drivers/kinect/kinect_receiver.h"
 
 #include <algorithm>
@@ -11,7 +9,9 @@ namespace camloc::kinect {
 
 KinectReceiver::Channel::Channel(const StreamLayout& layout) : assembler(layout) {
   for (RawFrame& frame : frames) frame.bytes.resize(layout.frame_bytes);
-  for (std::size_t i = 1; i < kNumFrames; ++i) free[num_free++] = &frames[i];
+  free.reserve(kNumFrames);
+  waiting.reserve(kNumFrames);
+  for (std::size_t i = 1; i < kNumFrames; ++i) free.push_back(&frames[i]);
   write_to(&frames[0]);
 }
 
@@ -36,14 +36,14 @@ void KinectReceiver::publish(Stream stream) {
   RawFrame* next = nullptr;
   {
     const std::lock_guard lock(mutex_);
-    if (c.num_free == 0) {  // nobody took the oldest in time
-      c.free[c.num_free++] = c.waiting[0];
-      std::move(c.waiting.begin() + 1, c.waiting.begin() + static_cast<std::ptrdiff_t>(c.num_waiting), c.waiting.begin());
-      --c.num_waiting;
+    if (c.free.empty()) {  // nobody took the oldest in time
+      c.free.push_back(c.waiting.front());
+      c.waiting.erase(c.waiting.begin());
       ++report_.frames_overwritten;
     }
-    next = c.free[--c.num_free];
-    c.waiting[c.num_waiting++] = c.writing;
+    next = c.free.back();
+    c.free.pop_back();
+    c.waiting.push_back(c.writing);
     ++num_events_;
   }
   c.write_to(next);
@@ -77,18 +77,17 @@ RawFrame* KinectReceiver::take(Stream stream) {
   Channel& c = channel(stream);
   const std::lock_guard lock(mutex_);
   num_seen_ = num_events_;
-  if (c.num_waiting == 0) return nullptr;
-  RawFrame* const frame = c.waiting[0];
-  std::move(c.waiting.begin() + 1, c.waiting.begin() + static_cast<std::ptrdiff_t>(c.num_waiting), c.waiting.begin());
-  --c.num_waiting;
+  if (c.waiting.empty()) return nullptr;
+  RawFrame* const frame = c.waiting.front();
+  c.waiting.erase(c.waiting.begin());
   return frame;
 }
 
 void KinectReceiver::release(Stream stream, RawFrame* frame) {
   Channel& c = channel(stream);
   const std::lock_guard lock(mutex_);
-  assert(c.num_free < kNumFrames);
-  c.free[c.num_free++] = frame;
+  assert(c.free.size() < kNumFrames);
+  c.free.push_back(frame);
 }
 
 void KinectReceiver::wait_until(std::chrono::steady_clock::time_point deadline) {
@@ -107,7 +106,8 @@ void KinectReceiver::restart() {
     Channel& c = *channels_[i];
     c.assembler.resynchronize();
     c.packet_ns = 0;
-    while (c.num_waiting > 0) c.free[c.num_free++] = c.waiting[--c.num_waiting];
+    c.free.insert(c.free.end(), c.waiting.rbegin(), c.waiting.rend());
+    c.waiting.clear();
     report_.counts[i] = c.assembler.counts();
   }
   report_.last_packet_ns = {};

@@ -1,13 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// See kinect_usb.h.
 #include "drivers/kinect/kinect_usb.h"
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdio>
 #include <optional>
 #include <span>
 #include <vector>
@@ -46,10 +43,6 @@ std::optional<libusb_device_descriptor> descriptor_of(libusb_device* device) {
   return descriptor;
 }
 
-bool is_product(const libusb_device_descriptor& descriptor, std::span<const std::uint16_t> products) {
-  return descriptor.idVendor == kVendorMicrosoft && std::find(products.begin(), products.end(), descriptor.idProduct) != products.end();
-}
-
 constexpr std::array<std::uint16_t, 2> kCameras{kProductCamera, kProductCameraK4w};
 constexpr std::array<std::uint16_t, 1> kMotors{kProductMotor};
 
@@ -57,7 +50,8 @@ std::vector<libusb_device*> devices_of(const DeviceList& list, std::span<const s
   std::vector<libusb_device*> found;
   for (libusb_device* device : list.devices()) {
     const auto descriptor = descriptor_of(device);
-    if (descriptor && is_product(*descriptor, products)) found.push_back(device);
+    if (!descriptor || descriptor->idVendor != kVendorMicrosoft) continue;
+    if (std::find(products.begin(), products.end(), descriptor->idProduct) != products.end()) found.push_back(device);
   }
   return found;
 }
@@ -142,14 +136,6 @@ std::string OpenCamera::model() const {
   return release == kReleaseOf1414 ? "Kinect model 1414" : "Kinect model 1473";
 }
 
-Result<UsbContext> create_usb_context() {
-  libusb_context* context = nullptr;
-  const int code = libusb_init(&context);
-  if (code != LIBUSB_SUCCESS) return usb_error(code, errno, "USB");
-  libusb_set_option(context, LIBUSB_OPTION_LOG_LEVEL, LIBUSB_LOG_LEVEL_NONE);
-  return UsbContext(context);
-}
-
 Status usb_error(int code, int system_error, const std::string& what) {
   switch (code) {
     case LIBUSB_ERROR_NO_DEVICE:
@@ -213,7 +199,7 @@ Result<StreamSetting> find_stream_setting(libusb_device* camera) {
   libusb_config_descriptor* config = nullptr;
   const int code = libusb_get_active_config_descriptor(camera, &config);
   if (code != LIBUSB_SUCCESS) return usb_error(code, 0, "Kinect camera, USB descriptors");
-  const std::unique_ptr<libusb_config_descriptor, void (*)(libusb_config_descriptor*)> owner(config, libusb_free_config_descriptor);
+  const std::unique_ptr<libusb_config_descriptor, UsbDeleter<libusb_free_config_descriptor>> owner(config);
   std::optional<StreamSetting> best;
   for (const libusb_interface& interface : elements(config->interface, config->bNumInterfaces)) {
     for (const libusb_interface_descriptor& alternate : elements(interface.altsetting, interface.num_altsetting)) {

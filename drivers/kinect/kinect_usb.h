@@ -14,16 +14,13 @@
 
 namespace camloc::kinect {
 
-struct UsbContextDeleter {
-  void operator()(libusb_context* context) const { libusb_exit(context); }
+template <auto kFree>
+struct UsbDeleter {
+  void operator()(auto* object) const { kFree(object); }
 };
-using UsbContext = std::unique_ptr<libusb_context, UsbContextDeleter>;
-struct UsbHandleDeleter {
-  void operator()(libusb_device_handle* handle) const { libusb_close(handle); }
-};
-using UsbHandle = std::unique_ptr<libusb_device_handle, UsbHandleDeleter>;
-
-[[nodiscard]] Result<UsbContext> create_usb_context();
+using UsbContext = std::unique_ptr<libusb_context, UsbDeleter<libusb_exit>>;
+using UsbHandle = std::unique_ptr<libusb_device_handle, UsbDeleter<libusb_close>>;
+using UsbTransfer = std::unique_ptr<libusb_transfer, UsbDeleter<libusb_free_transfer>>;
 
 /// libusb's `code` for what failed, in one line: permission names the udev rule, memory and bandwidth what to do. kUnavailable
 /// where the device is gone or may come back, kIo for permission, else kIo. `system_error` is errno at the failure, 0 if unknown.

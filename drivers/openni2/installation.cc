@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// See installation.h.
 #include "drivers/openni2/installation.h"
 
 #include <dlfcn.h>

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/camera_listing.h"
+#include "drivers/frame_source.h"
 #include "drivers/usb_devices.h"
 
 namespace camloc {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// See oni_file.h. The scanner reads the head of one record after the other and believes no size before it has compared it
+// The scanner reads the head of one record after the other and believes no size before it has compared it
 // with the file's.
 #include "drivers/openni2/oni_file.h"
 
@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <bit>
 #include <cerrno>
-#include <cmath>
 #include <cstring>
 #include <map>
 #include <string_view>
@@ -188,11 +187,8 @@ class Scanner {
     if (Status status = read_at(fd_, name_, position_, record_head_bytes_, fields_.data()); !status) return status;
     FieldReader head(fields_);
     if (head.number(4) != kRecordMagic) return broken("no record begins here");
-    Record record;
-    record.type = static_cast<std::uint32_t>(head.number(4));
-    record.node_id = static_cast<std::uint32_t>(head.number(4));
-    record.fields_size = static_cast<std::uint32_t>(head.number(4));
-    record.payload_size = static_cast<std::uint32_t>(head.number(4));
+    const auto number = [&head] { return static_cast<std::uint32_t>(head.number(4)); };
+    const Record record{number(), number(), number(), number()};
     if (record.fields_size < record_head_bytes_ || record.fields_size > kMaxFieldBytes)
       return broken("fields of " + std::to_string(record.fields_size) + " bytes");
     if (record.payload_size > kMaxPayloadBytes && record.type != kSeekTable)
@@ -313,17 +309,13 @@ class Scanner {
 
 }  // namespace
 
-Result<OniFile> OniFile::open(const std::string& path) {
+Result<OniFile> OniFile::open(const std::string& name) {
   // O_NONBLOCK: opening a named pipe must not hang.
-  UniqueFd file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  UniqueFd file(::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!file.is_open()) {
     return Status(errno == ENOENT || errno == ENOTDIR ? ErrorCode::kNotFound : ErrorCode::kIo,
-                  path + ": " + std::generic_category().message(errno));
+                  name + ": " + std::generic_category().message(errno));
   }
-  return open(std::move(file), path);
-}
-
-Result<OniFile> OniFile::open(UniqueFd file, const std::string& name) {
   struct stat info {};
   if (::fstat(file.get(), &info) != 0) return Status(ErrorCode::kIo, name + ": " + std::generic_category().message(errno));
   if (!S_ISREG(info.st_mode)) return Status(ErrorCode::kInvalid, name + ": is not a regular file");

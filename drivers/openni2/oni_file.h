@@ -23,7 +23,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,7 +33,6 @@
 namespace camloc::openni2 {
 
 enum class OniNode : std::uint8_t { kDepth, kColor, kInfrared };
-enum class OniCodec : std::uint8_t { kNone, k16z, k16zTable, kJpeg };
 
 /// How the frames of a stream look from some record on.
 struct OniFormat {
@@ -68,8 +66,6 @@ class OniFile {
   /// Reads every record's head, not the images. kNotFound, kIo; kInvalid: no .oni file or not a regular file; kUnsupported: a
   /// version, codec or pixel format that is not read; kCorrupt: broken before its first frame.
   [[nodiscard]] static Result<OniFile> open(const std::string& path);
-  /// The same from an open file; `name` is for messages.
-  [[nodiscard]] static Result<OniFile> open(UniqueFd file, const std::string& name);
 
   /// The first stream of its kind that has frames, or null.
   [[nodiscard]] const OniStream* find(OniNode node) const;

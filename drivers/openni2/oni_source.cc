@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// See oni_source.h. A frame is decoded before its time has come and then released on time.
 #include "drivers/openni2/oni_source.h"
 
 #include <algorithm>
@@ -10,11 +8,9 @@
 #include <utility>
 
 #include "core/io/image_file.h"
-#include "core/io/sequence.h"
-#include "drivers/openni2/depth_codec.h"
 #include "drivers/openni2/field_of_view.h"
 #include "drivers/openni2/oni_file.h"
-#include "drivers/pacer.h"
+#include "drivers/playback.h"
 
 namespace camloc {
 
@@ -33,13 +29,6 @@ using openni2::to_gray;
 
 constexpr std::int64_t kMaxPairGapUs = 20'000;
 constexpr std::size_t kNoDepth = static_cast<std::size_t>(-1);
-
-struct OniOptions {
-  double speed = 0;
-  bool loop = false;
-  bool is_registered = false;
-  bool wants_color = false;
-};
 
 /// Indices into the frames of the two streams.
 struct Pair {
@@ -79,35 +68,19 @@ struct OniRecording {
   std::int64_t length_ns = 0;    // first exposure to one mean interval after the last
 };
 
-class OniSource final : public FrameSource {
+class OniSource final : public Playback {
  public:
-  OniSource(OniRecording recording, OniOptions options, FrameSourceInfo info)
-      : recording_(std::move(recording)), options_(options), info_(std::move(info)), pacer_(options.speed) {}
-
-  [[nodiscard]] const FrameSourceInfo& info() const override { return info_; }
-
-  [[nodiscard]] Status next(FrameBuffer* frame, std::chrono::milliseconds timeout) override {
-    if (position_ == recording_.frames.size()) {
-      if (!options_.loop) return {ErrorCode::kEnd, "the recording is over"};
-      position_ = 0;
-      ++round_;
-    }
-    if (!is_loaded_) load_status_ = load(recording_.frames[position_]);
-    is_loaded_ = true;
-    if (!pacer_.wait_for(loaded_.stamp_ns, timeout)) return {ErrorCode::kTimeout, "the next frame is not due yet"};
-    is_loaded_ = false;
-    ++position_;
-    if (load_status_) std::swap(*frame, loaded_);
-    return load_status_;
-  }
+  OniSource(OniRecording recording, const PlaybackOptions& options, FrameSourceInfo info)
+      : Playback(std::move(info), options, ""), recording_(std::move(recording)) {}
 
  private:
-  Status load(const Pair& pair) {
+  [[nodiscard]] Status load(std::size_t position, std::uint64_t round) override {
+    const Pair& pair = recording_.frames[position];
     const OniFrameEntry& color = recording_.color.frames[pair.color];
-    loaded_.sequence = pair.color + round_ * recording_.num_recorded;
+    loaded_.sequence = pair.color + round * recording_.num_recorded;
     // Unsigned: after ages of looping it wraps instead of overflowing.
     loaded_.stamp_ns = static_cast<std::int64_t>(static_cast<std::uint64_t>(color.stamp_us) * 1000 +
-                                                 round_ * static_cast<std::uint64_t>(recording_.length_ns));
+                                                 round * static_cast<std::uint64_t>(recording_.length_ns));
     Status status = load_color(color);
     if (pair.depth == kNoDepth) {
       loaded_.depth.resize(0, 0);
@@ -131,7 +104,7 @@ class OniSource final : public FrameSource {
   Status load_jpeg(const OniFormat& format) {
     Image<std::uint8_t>& gray = format.is_mirrored ? unmirrored_ : loaded_.gray;
     Status status = decode_gray(bytes_, "colour image", &gray);
-    if (status) status = check_size(gray.width, gray.height, format);
+    if (status) status = check_size(gray.width, gray.height, format.width, format.height);
     if (status && format.is_mirrored)
       status =
           to_gray({gray.pixels, gray.width, gray.height, static_cast<std::size_t>(gray.width), PixelLayout::kGray8, true}, &loaded_.gray);
@@ -149,8 +122,7 @@ class OniSource final : public FrameSource {
     if (Status status = recording_.file.read_payload(entry, &bytes_); !status) return status;
     if (recording_.depth.codec == OniCodec::kNone) return to_depth(raw_image(format, bytes_), &loaded_.depth);
     loaded_.depth.resize(format.width, format.height);
-    const auto codec = recording_.depth.codec == OniCodec::k16z ? openni2::DepthCodec::k16z : openni2::DepthCodec::k16zTable;
-    if (Status status = decode_depth_codec(codec, bytes_, loaded_.depth.pixels); !status) return status;
+    if (Status status = decode_depth_codec(recording_.depth.codec, bytes_, loaded_.depth.pixels); !status) return status;
     if (!format.is_mirrored) return Status::ok();
     for (int y = 0; y < format.height; ++y) std::reverse(loaded_.depth.row(y), loaded_.depth.row(y) + format.width);
     return Status::ok();
@@ -163,28 +135,14 @@ class OniSource final : public FrameSource {
 
   /// The size and unit must not change on the way: nobody downstream expects it.
   static Status check_format(const OniFormat& format, const OniFormat& first) {
-    if (Status status = check_size(format.width, format.height, first); !status) return status;
+    if (Status status = check_size(format.width, format.height, first.width, first.height); !status) return status;
     if (format.pixels.depth_unit_m == first.pixels.depth_unit_m && !format.is_cropped) return Status::ok();
     return {ErrorCode::kCorrupt, format.is_cropped ? "cropped" : "another depth unit than the frames before"};
   }
 
-  static Status check_size(int width, int height, const OniFormat& expected) {
-    if (width == expected.width && height == expected.height) return Status::ok();
-    return {ErrorCode::kCorrupt, std::to_string(width) + "x" + std::to_string(height) + " pixels, the recording has " +
-                                     std::to_string(expected.width) + "x" + std::to_string(expected.height)};
-  }
-
   OniRecording recording_;
-  OniOptions options_;
-  FrameSourceInfo info_;
-  Pacer pacer_;
   std::vector<std::uint8_t> bytes_;
   Image<std::uint8_t> unmirrored_;
-  FrameBuffer loaded_;  // decoded, waiting for its time
-  Status load_status_;
-  bool is_loaded_ = false;
-  std::size_t position_ = 0;
-  std::uint64_t round_ = 0;
 };
 
 /// Refuses what no frame of the source could pass.
@@ -204,9 +162,7 @@ std::int64_t length_of(const std::vector<OniFrameEntry>& frames) {
   constexpr std::int64_t kDefaultIntervalNs = 33'333'333;
   const auto [first, last] =
       std::minmax_element(frames.begin(), frames.end(), [](const auto& a, const auto& b) { return a.stamp_us < b.stamp_us; });
-  const std::int64_t span_ns = (last->stamp_us - first->stamp_us) * 1000;
-  const auto num_gaps = static_cast<std::int64_t>(frames.size()) - 1;
-  return num_gaps > 0 ? span_ns + span_ns / num_gaps : kDefaultIntervalNs;
+  return playback_length_ns((last->stamp_us - first->stamp_us) * 1000, frames.size(), kDefaultIntervalNs);
 }
 
 Result<OniRecording> select_recording(const SourceUrl& url) {
@@ -217,17 +173,12 @@ Result<OniRecording> select_recording(const SourceUrl& url) {
     return Status(ErrorCode::kUnsupported, url.path + ": records depth alone; localization needs a colour or infrared stream");
   const OniStream* depth = file->find(OniNode::kDepth);
   if (Status status = check_stream(*color, url.path); !status) return status;
-  if (depth != nullptr) {
-    if (Status status = check_stream(*depth, url.path); !status) return status;
-  }
+  if (Status status = depth != nullptr ? check_stream(*depth, url.path) : Status::ok(); !status) return status;
   OniRecording recording{std::move(file).value(), {}, {}, {}, color->frames.size(), length_of(color->frames)};
   recording.color = *color;
   if (depth != nullptr) recording.depth = *depth;
-  Result<std::vector<std::size_t>> chosen =
-      select_frames(url.text_option("frames", ""), url.text_option("exclude", ""), recording.num_recorded);
-  if (!chosen) return chosen.status().with_context(url.path);
-  if (chosen->empty())
-    return Status(ErrorCode::kInvalid, url.text + ": the selection leaves none of " + std::to_string(recording.num_recorded) + " frames");
+  const Result<std::vector<std::size_t>> chosen = chosen_frames(url, recording.num_recorded);
+  if (!chosen) return chosen.status();
   const std::vector<Pair> pairs = pair_frames(recording.color.frames, recording.depth.frames);
   for (const std::size_t index : *chosen) recording.frames.push_back(pairs[index]);
   return recording;
@@ -261,28 +212,20 @@ FrameSourceInfo describe(const std::string& path, const OniRecording& recording,
   return info;
 }
 
-Result<bool> flag_option(const SourceUrl& url, const std::string& key) {
-  const std::string value = url.text_option(key, "0");
-  if (value != "0" && value != "1") return Status(ErrorCode::kInvalid, url.text + ": option " + key + "=" + value + ": expected 0 or 1");
-  return value == "1";
-}
-
 }  // namespace
 
 Result<std::unique_ptr<FrameSource>> open_oni_source(const SourceUrl& url, const FrameSourceOptions& options) {
   if (Status status = url.check_options({"speed", "loop", "frames", "exclude", "registered"}); !status) return status;
   if (url.path.empty()) return Status(ErrorCode::kInvalid, url.text + ": no file; expected oni://FILE");
-  const Result<double> speed = url.number_option("speed", 0, 0, 1000);
-  if (!speed) return speed.status();
-  const Result<bool> loop = flag_option(url, "loop");
-  if (!loop) return loop.status();
-  const Result<bool> is_registered = flag_option(url, "registered");
-  if (!is_registered) return is_registered.status();
+  OptionReader reader(url);
+  const double speed = reader.number("speed", 0, 0, 1000);
+  const PlaybackOptions playback{speed, reader.flag("loop"), options.wants_color};
+  const bool is_registered = reader.flag("registered");
+  if (!reader.status()) return reader.status();
   Result<OniRecording> recording = select_recording(url);
   if (!recording) return recording.status();
-  FrameSourceInfo info = describe(url.path, *recording, *is_registered);
-  return std::unique_ptr<FrameSource>(std::make_unique<OniSource>(
-      std::move(recording).value(), OniOptions{*speed, *loop, *is_registered, options.wants_color}, std::move(info)));
+  FrameSourceInfo info = describe(url.path, *recording, is_registered);
+  return std::unique_ptr<FrameSource>(std::make_unique<OniSource>(std::move(recording).value(), playback, std::move(info)));
 }
 
 }  // namespace camloc

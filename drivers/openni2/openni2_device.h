@@ -11,9 +11,30 @@
 
 #include "core/geometry/camera.h"
 #include "drivers/openni2/openni2_library.h"
-#include "drivers/openni2/video_mode.h"
+#include "drivers/openni2/pixel_layout.h"
 
 namespace camloc::openni2 {
+
+// ---- which of the video modes that a device offers a camera is set to
+
+/// What the user asks for. Zero: no matter, near 640x480 at 30 Hz.
+struct ModeRequest {
+  int width = 0;
+  int height = 0;
+  int fps = 0;
+};
+
+enum class StreamUse { kDepth, kImage };
+
+/// The mode for the request, or nothing where no mode that is read has the size and rate asked for. Depth in millimetres is
+/// preferred to tenths of them, whose 16 bits end at 6.5 m; RGB to YUV to grey, as RGB is what every device has been tried with.
+[[nodiscard]] std::optional<OniVideoMode> choose_mode(std::span<const OniVideoMode> offered, StreamUse use, const ModeRequest& request);
+
+/// "640x480@30 RGB888"; the number of a format that is not read.
+[[nodiscard]] std::string describe(const OniVideoMode& mode);
+[[nodiscard]] std::string describe(std::span<const OniVideoMode> modes);
+
+// ---- the device
 
 /// One running stream.
 struct Stream {
@@ -47,6 +68,8 @@ class Device {
   [[nodiscard]] bool is_synchronized() const { return is_synchronized_; }
   [[nodiscard]] const std::string& uri() const { return entry_.uri; }
   [[nodiscard]] const std::string& serial() const { return serial_; }
+  /// kUnavailable, with the library's words for its last error.
+  [[nodiscard]] Status error(const std::string& what) const;
   /// One line: name, modes, registration, synchronization. After start().
   [[nodiscard]] std::string description() const;
   /// Where depth is registered to the image (or both are of one sensor) and the device tells its field of view. After start().
@@ -60,7 +83,6 @@ class Device {
   [[nodiscard]] std::span<const OniVideoMode> offered_modes(OniSensorType sensor) const;
   void set_registration();
   [[nodiscard]] bool read_registration() const;
-  [[nodiscard]] Status error(const std::string& what) const;
 
   std::shared_ptr<Session> session_;
   GoneFlag gone_ = std::make_shared<std::atomic<bool>>(false);

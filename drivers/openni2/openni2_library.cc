@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// See openni2_library.h.
 #include "drivers/openni2/openni2_library.h"
 
 #include <dlfcn.h>
@@ -64,17 +62,6 @@ std::string last_error_of(const Api& api) {
   return line.empty() ? "no reason given" : line;
 }
 
-/// The process has one library and so one session; where they are kept.
-struct Shared {
-  std::mutex mutex;
-  std::weak_ptr<Session> session;
-};
-
-Shared& shared() {
-  static Shared instance;
-  return instance;
-}
-
 }  // namespace
 
 std::string version_text(const OniVersion& version) {
@@ -98,8 +85,11 @@ Result<const LoadedLibrary*> load_library() {
 Result<std::shared_ptr<Session>> Session::acquire() {
   const Result<const LoadedLibrary*> library = load_library();
   if (!library) return library.status();
-  const std::lock_guard<std::mutex> lock(shared().mutex);
-  if (std::shared_ptr<Session> session = shared().session.lock()) return session;
+  // The process has one library and so one session.
+  static std::mutex mutex;
+  static std::weak_ptr<Session> current;
+  const std::lock_guard<std::mutex> lock(mutex);
+  if (std::shared_ptr<Session> session = current.lock()) return session;
   const Api& api = library.value()->api;
   api.set_log_console_output(FALSE);
   api.set_log_file_output(FALSE);
@@ -110,12 +100,18 @@ Result<std::shared_ptr<Session>> Session::acquire() {
                                                "): it expects its drivers in the folder OpenNI2/Drivers beside it; ask `camloc doctor`");
   }
   const std::shared_ptr<Session> session(new Session(*library.value()), [](Session* expired) {
-    const std::lock_guard<std::mutex> last(shared().mutex);
+    const std::lock_guard<std::mutex> last(mutex);
     delete expired;
   });
+  const auto on_disconnected = [](const OniDeviceInfo* info, void* cookie) {
+    static_cast<Session*>(cookie)->mark_gone(text_of(info->uri));
+  };
+  const auto on_state = [](const OniDeviceInfo* info, OniDeviceState state, void* cookie) {
+    if (state == ONI_DEVICE_STATE_ERROR) static_cast<Session*>(cookie)->mark_gone(text_of(info->uri));
+  };
   OniDeviceCallbacks callbacks{nullptr, on_disconnected, on_state};
   if (api.register_device_callbacks(&callbacks, session.get(), &session->callbacks_) != ONI_STATUS_OK) session->callbacks_ = nullptr;
-  shared().session = session;
+  current = session;
   return session;
 }
 
@@ -148,19 +144,11 @@ void Session::unwatch(const GoneFlag& gone) {
   std::erase_if(watches_, [&gone](const Watch& watch) { return watch.gone == gone; });
 }
 
-void Session::mark_gone(const char* uri) {
+void Session::mark_gone(const std::string& uri) {
   const std::lock_guard<std::mutex> lock(mutex_);
   for (const Watch& watch : watches_) {
     if (watch.uri == uri) watch.gone->store(true);
   }
-}
-
-void Session::on_disconnected(const OniDeviceInfo* info, void* cookie) {
-  static_cast<Session*>(cookie)->mark_gone(text_of(info->uri).c_str());
-}
-
-void Session::on_state(const OniDeviceInfo* info, OniDeviceState state, void* cookie) {
-  if (state == ONI_DEVICE_STATE_ERROR) static_cast<Session*>(cookie)->mark_gone(text_of(info->uri).c_str());
 }
 
 }  // namespace camloc::openni2

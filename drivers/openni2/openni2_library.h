@@ -103,9 +103,7 @@ class Session {
 
  private:
   explicit Session(const LoadedLibrary& library) : library_(library) {}
-  void mark_gone(const char* uri);
-  static void on_disconnected(const OniDeviceInfo* info, void* cookie);
-  static void on_state(const OniDeviceInfo* info, OniDeviceState state, void* cookie);
+  void mark_gone(const std::string& uri);
 
   struct Watch {
     std::string uri;

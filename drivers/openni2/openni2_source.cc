@@ -1,11 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// See openni2_source.h. The library's threads fill its own buffers; this one waits, in short slices so that a device that
+// The library's threads fill its own buffers; this one waits, in short slices so that a device that
 // went away is noticed, converts what came at once and keeps the newest images and depths until two of one time make a pair.
 #include "drivers/openni2/openni2_source.h"
-
-#include <time.h>
 
 #include <algorithm>
 #include <array>
@@ -24,12 +22,6 @@ using openni2::RawImage;
 using openni2::Stream;
 
 constexpr std::chrono::milliseconds kWaitSlice(20);
-
-std::int64_t monotonic_ns() {
-  timespec now{};
-  ::clock_gettime(CLOCK_MONOTONIC, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
 
 /// A frame of one stream, until it is paired.
 struct Entry {
@@ -127,9 +119,9 @@ class Openni2Source final : public FrameSource {
     int index = -1;
     const OniStatus waited = api.wait_for_any_stream(streams, device_->has_depth() ? 2 : 1, &index, static_cast<int>(timeout.count()));
     if (waited == ONI_STATUS_TIME_OUT) return false;
-    if (waited != ONI_STATUS_OK || index < 0 || index > 1) return library_error("waiting for a frame failed");
+    if (waited != ONI_STATUS_OK || index < 0 || index > 1) return device_->error("waiting for a frame failed");
     OniFrame* raw = nullptr;
-    if (api.stream_read_frame(streams[index], &raw) != ONI_STATUS_OK || raw == nullptr) return library_error("reading a frame failed");
+    if (api.stream_read_frame(streams[index], &raw) != ONI_STATUS_OK || raw == nullptr) return device_->error("reading a frame failed");
     const Status status = keep(*raw, index == 0);
     api.frame_release(raw);
     if (status) return true;
@@ -137,13 +129,9 @@ class Openni2Source final : public FrameSource {
     return status;
   }
 
-  [[nodiscard]] Status library_error(const std::string& what) const {
-    return {ErrorCode::kUnavailable, "OpenNI2 device " + device_->uri() + ": " + what + " (" + device_->session().last_error() + ")"};
-  }
-
   Status keep(const OniFrame& raw, bool is_image) {
     constexpr std::uint64_t kMaxStampUs = 4'000'000'000'000'000;
-    const std::int64_t arrival_ns = monotonic_ns();
+    const std::int64_t arrival_ns = steady_now_ns();
     const Stream& stream = is_image ? device_->image() : device_->depth();
     if (is_image) ++sequence_;
     const auto bad = [&](const std::string& why) {
@@ -238,16 +226,6 @@ class Openni2Source final : public FrameSource {
   std::uint64_t num_unpaired_ = 0;
 };
 
-Result<openni2::ModeRequest> mode_request(const SourceUrl& url) {
-  const Result<double> width = url.number_option("width", 0, 1, 16384);
-  if (!width) return width.status();
-  const Result<double> height = url.number_option("height", 0, 1, 16384);
-  if (!height) return height.status();
-  const Result<double> rate_hz = url.number_option("rate_hz", 0, 1, 1000);
-  if (!rate_hz) return rate_hz.status();
-  return openni2::ModeRequest{static_cast<int>(*width), static_cast<int>(*height), static_cast<int>(*rate_hz)};
-}
-
 FrameSourceInfo describe(const Device& device) {
   FrameSourceInfo info;
   info.description = device.description();
@@ -265,9 +243,12 @@ FrameSourceInfo describe(const Device& device) {
 
 Result<std::unique_ptr<FrameSource>> open_openni2_source(const SourceUrl& url, const FrameSourceOptions& options) {
   if (Status status = url.check_options({"width", "height", "rate_hz"}); !status) return status;
-  const Result<openni2::ModeRequest> request = mode_request(url);
-  if (!request) return request.status();
-  Result<std::unique_ptr<Device>> device = Device::open(url.path, *request);
+  OptionReader wanted(url);
+  const double width = wanted.number("width", 0, 1, 16384), height = wanted.number("height", 0, 1, 16384);
+  const double rate_hz = wanted.number("rate_hz", 0, 1, 1000);
+  if (!wanted.status()) return wanted.status();
+  Result<std::unique_ptr<Device>> device =
+      Device::open(url.path, {static_cast<int>(width), static_cast<int>(height), static_cast<int>(rate_hz)});
   if (!device) return device.status();
   if (Status status = (*device)->start(); !status) return status;
   FrameSourceInfo info = describe(**device);

@@ -10,6 +10,7 @@
 #include <cctype>
 #include <cerrno>
 #include <optional>
+#include <vector>
 
 #include "core/io/text.h"
 
@@ -19,6 +20,14 @@ namespace {
 
 constexpr int kMaxControls = 256;
 constexpr std::int64_t kMaxMenuEntries = 128;
+
+struct V4l2Control {
+  std::uint32_t id = 0;
+  std::uint32_t type = 0;   ///< V4L2_CTRL_TYPE_*
+  std::uint32_t flags = 0;  ///< V4L2_CTRL_FLAG_*
+  std::string name;         ///< as control_name() makes it
+  std::int64_t minimum = 0, maximum = 0;
+};
 
 bool is_settable_type(std::uint32_t type) {
   return type == V4L2_CTRL_TYPE_INTEGER || type == V4L2_CTRL_TYPE_BOOLEAN || type == V4L2_CTRL_TYPE_MENU ||
@@ -36,17 +45,9 @@ std::string name_of(const T (&field)[N]) {
   return control_name({reinterpret_cast<const char*>(&field[0]), length});
 }
 
-V4l2Control from_query(const v4l2_query_ext_ctrl& query) {
-  return {query.id, query.type, query.flags, name_of(query.name), query.minimum, query.maximum, query.step};
-}
-
-V4l2Control from_query(const v4l2_queryctrl& query) {
-  return {query.id, query.type, query.flags, name_of(query.name), query.minimum, query.maximum, static_cast<std::uint64_t>(query.step)};
-}
-
 // Every answer names the control that comes after the one asked about. The ids must grow, or a driver could go in circles.
 template <typename Query>
-std::vector<V4l2Control> walk_controls(const V4l2Device& device, unsigned long request) {
+std::vector<V4l2Control> list_controls(const V4l2Device& device, unsigned long request) {
   std::vector<V4l2Control> controls;
   std::uint32_t id = 0;
   for (int i = 0; i < kMaxControls; ++i) {
@@ -54,7 +55,8 @@ std::vector<V4l2Control> walk_controls(const V4l2Device& device, unsigned long r
     query.id = id | V4L2_CTRL_FLAG_NEXT_CTRL;
     if (device.ioctl(request, &query) != 0 || query.id <= id) break;
     id = query.id;
-    if (is_settable_type(query.type) && (query.flags & V4L2_CTRL_FLAG_DISABLED) == 0) controls.push_back(from_query(query));
+    if (is_settable_type(query.type) && (query.flags & V4L2_CTRL_FLAG_DISABLED) == 0)
+      controls.push_back({query.id, query.type, query.flags, name_of(query.name), query.minimum, query.maximum});
   }
   return controls;
 }
@@ -149,15 +151,10 @@ std::string control_name(std::string_view name) {
   return result;
 }
 
-std::vector<V4l2Control> list_v4l2_controls(const V4l2Device& device) {
-  std::vector<V4l2Control> controls = walk_controls<v4l2_query_ext_ctrl>(device, VIDIOC_QUERY_EXT_CTRL);
-  if (controls.empty()) controls = walk_controls<v4l2_queryctrl>(device, VIDIOC_QUERYCTRL);
-  return controls;
-}
-
 Status set_v4l2_controls(const V4l2Device& device, const std::map<std::string, std::string>& wanted) {
   if (wanted.empty()) return Status::ok();
-  const std::vector<V4l2Control> controls = list_v4l2_controls(device);
+  std::vector<V4l2Control> controls = list_controls<v4l2_query_ext_ctrl>(device, VIDIOC_QUERY_EXT_CTRL);
+  if (controls.empty()) controls = list_controls<v4l2_queryctrl>(device, VIDIOC_QUERYCTRL);
   const auto find = [&](const std::string& name) {
     return std::find_if(controls.begin(), controls.end(), [&](const V4l2Control& control) { return control.name == control_name(name); });
   };

@@ -8,7 +8,7 @@
 #include <cassert>
 
 #include "core/io/image_file.h"
-#include "drivers/packed_pixels.h"
+#include "drivers/raw_pixels.h"
 
 namespace camloc {
 
@@ -133,10 +133,6 @@ void bgr_rows_of_yuv(const V4l2ImageLayout& layout, const V4l2Planes& planes, Im
   }
 }
 
-void swap_red_and_blue(const std::vector<std::uint8_t>& rgb, Image<Bgr>* color) {
-  for (std::size_t i = 0; i < color->pixels.size(); ++i) color->pixels[i] = {rgb[3 * i + 2], rgb[3 * i + 1], rgb[3 * i]};
-}
-
 }  // namespace
 
 Status convert_to_gray(const V4l2ImageLayout& layout, const V4l2Planes& planes, unsigned significant_bits, Image<std::uint8_t>* gray) {
@@ -163,7 +159,7 @@ Status convert_to_bgr(const V4l2ImageLayout& layout, const V4l2Planes& planes, I
     return Status::ok();
   }
   if (Status status = decode_frame(layout, planes, PixelKind::kColor, scratch); !status) return status;
-  swap_red_and_blue(scratch->pixels, color);
+  rgb_to_bgr(scratch->pixels, color);
   return Status::ok();
 }
 

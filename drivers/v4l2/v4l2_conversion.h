@@ -28,6 +28,10 @@ struct V4l2ImageLayout {
   int width = 0, height = 0;
   std::array<std::size_t, 2> stride_bytes{};  ///< from row to row of each plane; at least min_row_bytes()
   YuvEncoding encoding;
+
+  [[nodiscard]] std::size_t plane_bytes(unsigned plane) const {
+    return min_plane_bytes(*format, plane, width, height, stride_bytes[plane]);
+  }
 };
 
 /// At least min_plane_bytes() each; of a JPEG as many as the frame has.

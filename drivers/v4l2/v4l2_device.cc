@@ -1,14 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// See v4l2_device.h.
 #include "drivers/v4l2/v4l2_device.h"
 
 #include <linux/videodev2.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <utility>
@@ -97,11 +94,6 @@ std::string sizes_text(const std::vector<V4l2SizeOffer>& sizes) {
 }
 
 }  // namespace
-
-bool V4l2SizeRange::contains(int width, int height) const {
-  return width >= min_width && width <= max_width && (width - min_width) % step_width == 0 && height >= min_height &&
-         height <= max_height && (height - min_height) % step_height == 0;
-}
 
 Result<V4l2Device> V4l2Device::open(V4l2Io& io, const std::string& path) {
   const int fd = io.open(path);

@@ -18,7 +18,6 @@ struct V4l2SizeRange {
   int min_width = 0, max_width = 0, step_width = 1;
   int min_height = 0, max_height = 0, step_height = 1;
   [[nodiscard]] bool is_one() const { return min_width == max_width && min_height == max_height; }
-  [[nodiscard]] bool contains(int width, int height) const;
 };
 
 /// Rates from min to max; one rate has min == max.

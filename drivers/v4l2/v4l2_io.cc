@@ -11,8 +11,9 @@
 
 #include <cerrno>
 #include <cstdlib>
-#include <ctime>
 #include <system_error>
+
+#include "drivers/device_clock.h"
 
 namespace camloc {
 
@@ -46,11 +47,7 @@ class SystemV4l2Io final : public V4l2Io {
     return errno == EINTR ? 0 : -errno;
   }
 
-  [[nodiscard]] std::int64_t monotonic_ns() override {
-    timespec now{};
-    ::clock_gettime(CLOCK_MONOTONIC, &now);
-    return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-  }
+  [[nodiscard]] std::int64_t monotonic_ns() override { return steady_now_ns(); }
 };
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 
 namespace camloc {
 
@@ -41,32 +42,18 @@ class V4l2Io {
 /// Owner of a descriptor of a V4l2Io, which outlives it.
 class V4l2Fd {
  public:
-  V4l2Fd() = default;
   V4l2Fd(V4l2Io& io, int fd) : io_(&io), fd_(fd) {}
-  ~V4l2Fd() { reset(); }
-  V4l2Fd(V4l2Fd&& other) noexcept : io_(other.io_), fd_(other.fd_) { other.fd_ = -1; }
-  V4l2Fd& operator=(V4l2Fd&& other) noexcept {
-    if (this != &other) {
-      reset();
-      io_ = other.io_;
-      fd_ = other.fd_;
-      other.fd_ = -1;
-    }
-    return *this;
+  ~V4l2Fd() {
+    if (fd_ >= 0) io_->close(fd_);
   }
-  V4l2Fd(const V4l2Fd&) = delete;
-  V4l2Fd& operator=(const V4l2Fd&) = delete;
+  V4l2Fd(V4l2Fd&& other) noexcept : io_(other.io_), fd_(std::exchange(other.fd_, -1)) {}
 
   [[nodiscard]] int get() const { return fd_; }
   [[nodiscard]] V4l2Io& io() const { return *io_; }
-  void reset() {
-    if (fd_ >= 0) io_->close(fd_);
-    fd_ = -1;
-  }
 
  private:
-  V4l2Io* io_ = nullptr;
-  int fd_ = -1;
+  V4l2Io* io_;
+  int fd_;
 };
 
 }  // namespace camloc

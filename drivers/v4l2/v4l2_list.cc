@@ -6,10 +6,7 @@
 #include "drivers/v4l2/v4l2_list.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <system_error>
 
@@ -24,34 +21,15 @@ namespace fs = std::filesystem;
 constexpr int kMaxLevels = 8;           // from an interface to its device; two in practice
 constexpr std::size_t kMaxNodes = 256;  // minors of a character device
 
-/// The folder of the USB device that the node hangs on.
-std::optional<fs::path> usb_device_folder(const std::string& name, const SystemFolders& folders) {
+/// The USB device that the node hangs on.
+std::optional<UsbDevice> usb_device_of(const std::string& name, const SystemFolders& folders) {
   std::error_code error;
   fs::path folder = fs::canonical(fs::path(folders.path("/sys/class/video4linux")) / name / "device", error);
   if (error) return std::nullopt;
   for (int level = 0; level < kMaxLevels && folder.has_relative_path(); ++level, folder = folder.parent_path()) {
-    if (fs::exists(folder / "busnum", error) && fs::exists(folder / "devnum", error)) return folder;
+    if (fs::exists(folder / "busnum", error) && fs::exists(folder / "devnum", error)) return read_usb_device(folder);
   }
   return std::nullopt;
-}
-
-std::string usb_node_of(const fs::path& device, const SystemFolders& folders) {
-  const std::optional<std::int64_t> bus = parse_int(read_system_attribute(device / "busnum")),
-                                    number = parse_int(read_system_attribute(device / "devnum"));
-  if (!bus || !number || *bus < 0 || *bus > 999 || *number < 0 || *number > 999) return "";
-  char name[16];
-  std::snprintf(name, sizeof(name), "%03d/%03d", static_cast<int>(*bus), static_cast<int>(*number));
-  return folders.path("/dev/bus/usb/") + name;
-}
-
-std::string by_id_link(const std::string& path, const SystemFolders& folders) {
-  std::error_code error;
-  for (fs::directory_iterator entry(folders.path("/dev/v4l/by-id"), error), end; !error && entry != end; entry.increment(error)) {
-    std::error_code broken;
-    const fs::path target = fs::weakly_canonical(entry->path(), broken);
-    if (!broken && target.filename() == fs::path(path).filename()) return entry->path().string();
-  }
-  return "";
 }
 
 /// N of "videoN".
@@ -91,10 +69,9 @@ V4l2DeviceInfo describe_v4l2_node(const std::string& path, const SystemFolders& 
   info.path = error || real.empty() ? path : real.string();
   const std::string name = fs::path(info.path).filename().string();
   info.name = read_system_attribute(fs::path(folders.path("/sys/class/video4linux")) / name / "name");
-  info.by_id = by_id_link(info.path, folders);
-  if (const std::optional<fs::path> device = usb_device_folder(name, folders)) {
-    info.serial = read_system_attribute(*device / "serial");
-    info.usb_node = usb_node_of(*device, folders);
+  if (const std::optional<UsbDevice> device = usb_device_of(name, folders)) {
+    info.serial = device->serial;
+    info.usb_node = folders.path(device->node());
   }
   return info;
 }
@@ -107,7 +84,6 @@ std::vector<V4l2DeviceInfo> list_v4l2_devices(V4l2Io& io, const SystemFolders& f
     if (!device && device.status().code() == ErrorCode::kUnsupported) continue;
     if (device) {
       info.name = device->card();
-      info.driver = device->driver();
       info.bus = device->bus();
       info.formats = device->offers();
     } else {

@@ -4,12 +4,11 @@
 // Which cameras the kernel has, by what it says in /sys, and who they are: serial, stable name, USB address.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/base/result.h"
-#include "drivers/camera_listing.h"
+#include "drivers/frame_source.h"
 #include "drivers/usb_devices.h"
 #include "drivers/v4l2/v4l2_device.h"
 #include "drivers/v4l2/v4l2_pixel_format.h"
@@ -19,10 +18,8 @@ namespace camloc {
 struct V4l2DeviceInfo {
   std::string path;      ///< /dev/videoN
   std::string name;      ///< for people, as the driver gives it
-  std::string driver;    ///< empty where the node could not be opened
   std::string bus;       ///< e.g. usb-0000:00:14.0-1
   std::string serial;    ///< of the USB device; empty where it has none
-  std::string by_id;     ///< the link in /dev/v4l/by-id; empty where udev made none
   std::string usb_node;  ///< /dev/bus/usb/BBB/DDD; empty for a device that is not on USB
   std::vector<V4l2FormatOffer> formats;
   std::string problem;  ///< why the node could not be opened, in one line; empty where it could
@@ -36,7 +33,7 @@ struct V4l2DeviceInfo {
 [[nodiscard]] CameraListing list_v4l2_cameras(V4l2Io& io, const SystemFolders& folders);
 [[nodiscard]] CameraListing list_v4l2_cameras(const SystemFolders& folders);
 
-/// What /sys says about the node `path`, which may be a link: `path` as /dev/videoN, serial, by_id, usb_node.
+/// What /sys says about the node `path`, which may be a link: `path` as /dev/videoN, serial, usb_node.
 [[nodiscard]] V4l2DeviceInfo describe_v4l2_node(const std::string& path, const SystemFolders& folders);
 
 /// The node of the device with this serial that fits the role best: for images one with colour before infrared, for depth one

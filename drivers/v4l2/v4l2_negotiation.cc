@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// See v4l2_negotiation.h.
 #include "drivers/v4l2/v4l2_negotiation.h"
 
 #include <linux/videodev2.h>
@@ -114,31 +112,24 @@ struct Answer {
 };
 
 Answer answer_of(const v4l2_format& format, bool is_multiplanar) {
+  const auto common = [](const auto& p) {
+    return Answer{p.width, p.height, p.pixelformat, p.field, 1, {}, {}, p.colorspace, p.ycbcr_enc, p.quantization};
+  };
   if (is_multiplanar) {
     const v4l2_pix_format_mplane& p = format.fmt.pix_mp;
-    return {p.width,
-            p.height,
-            p.pixelformat,
-            p.field,
-            p.num_planes,
-            {p.plane_fmt[0].bytesperline, p.plane_fmt[1].bytesperline},
-            {p.plane_fmt[0].sizeimage, p.plane_fmt[1].sizeimage},
-            p.colorspace,
-            p.ycbcr_enc,
-            p.quantization};
+    Answer answer = common(p);
+    answer.num_planes = p.num_planes;
+    answer.stride = {p.plane_fmt[0].bytesperline, p.plane_fmt[1].bytesperline};
+    answer.plane_bytes = {p.plane_fmt[0].sizeimage, p.plane_fmt[1].sizeimage};
+    return answer;
   }
   const v4l2_pix_format& p = format.fmt.pix;
+  Answer answer = common(p);
+  answer.stride[0] = p.bytesperline;
+  answer.plane_bytes[0] = p.sizeimage;
   const bool has_extension = p.priv == V4L2_PIX_FMT_PRIV_MAGIC;
-  return {p.width,
-          p.height,
-          p.pixelformat,
-          p.field,
-          1,
-          {p.bytesperline, 0},
-          {p.sizeimage, 0},
-          p.colorspace,
-          has_extension ? p.ycbcr_enc : 0,
-          has_extension ? p.quantization : 0};
+  if (!has_extension) answer.ycbcr_enc = answer.quantization = 0;
+  return answer;
 }
 
 YuvEncoding encoding_of(const Answer& answer) {
@@ -187,12 +178,11 @@ Result<V4l2ImageLayout> checked_layout(const V4l2Device& device, const Choice& c
       return contradiction(device, "rows of " + std::to_string(stride) + " bytes for " + std::to_string(choice.width) + " pixels of " +
                                        fourcc_name(answer.fourcc) + ", which take " + std::to_string(row));
     }
-    const std::size_t bytes = answer.plane_bytes[plane],
-                      needed = min_plane_bytes(*choice.format, plane, choice.width, choice.height, stride);
+    layout.stride_bytes[plane] = stride;
+    const std::size_t bytes = answer.plane_bytes[plane], needed = layout.plane_bytes(plane);
     if (bytes < std::max<std::size_t>(needed, 1) || bytes > kMaxV4l2BufferBytes) {
       return contradiction(device, "buffers of " + std::to_string(bytes) + " bytes for frames of " + std::to_string(needed));
     }
-    layout.stride_bytes[plane] = stride;
   }
   return layout;
 }
@@ -200,18 +190,17 @@ Result<V4l2ImageLayout> checked_layout(const V4l2Device& device, const Choice& c
 Result<V4l2ImageLayout> set_format(const V4l2Device& device, const Choice& choice) {
   v4l2_format format{};
   format.type = device.buffer_type();
-  const auto width = static_cast<std::uint32_t>(choice.width), height = static_cast<std::uint32_t>(choice.height);
+  const auto ask = [&choice](auto* pixels) {
+    pixels->width = static_cast<std::uint32_t>(choice.width);
+    pixels->height = static_cast<std::uint32_t>(choice.height);
+    pixels->pixelformat = choice.format->fourcc;
+    pixels->field = V4L2_FIELD_NONE;
+  };
   if (device.is_multiplanar()) {
-    format.fmt.pix_mp.width = width;
-    format.fmt.pix_mp.height = height;
-    format.fmt.pix_mp.pixelformat = choice.format->fourcc;
-    format.fmt.pix_mp.field = V4L2_FIELD_NONE;
+    ask(&format.fmt.pix_mp);
     format.fmt.pix_mp.num_planes = static_cast<std::uint8_t>(choice.format->num_planes);
   } else {
-    format.fmt.pix.width = width;
-    format.fmt.pix.height = height;
-    format.fmt.pix.pixelformat = choice.format->fourcc;
-    format.fmt.pix.field = V4L2_FIELD_NONE;
+    ask(&format.fmt.pix);
     format.fmt.pix.priv = V4L2_PIX_FMT_PRIV_MAGIC;
   }
   const int error = device.ioctl(VIDIOC_S_FMT, &format);

@@ -5,7 +5,6 @@
 // that the frame path only has to look at how many bytes came.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>

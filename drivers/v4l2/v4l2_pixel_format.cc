@@ -1,13 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// See v4l2_pixel_format.h.
 #include "drivers/v4l2/v4l2_pixel_format.h"
 
 #include <linux/videodev2.h>
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 namespace camloc {
 
@@ -40,11 +39,7 @@ constexpr V4l2PixelFormat kFormats[] = {
     {V4L2_PIX_FMT_Z16, PixelLayout::kWords, 16, 16, false, false, true},
 };
 
-struct Alias {
-  std::string_view name;
-  std::uint32_t fourcc;
-};
-constexpr Alias kAliases[] = {
+constexpr std::pair<std::string_view, std::uint32_t> kAliases[] = {
     {"MJPEG", V4L2_PIX_FMT_MJPEG}, {"NV12M", V4L2_PIX_FMT_NV12M},    {"BGGR", V4L2_PIX_FMT_SBGGR8},
     {"Y8", V4L2_PIX_FMT_GREY},     {"Y16 -BE", V4L2_PIX_FMT_Y16_BE},
 };
@@ -79,8 +74,8 @@ std::optional<std::uint32_t> parse_fourcc(std::string_view name) {
   for (const V4l2PixelFormat& format : kFormats) {
     if (fourcc_name(format.fourcc) == upper) return format.fourcc;
   }
-  for (const Alias& alias : kAliases) {
-    if (alias.name == upper) return alias.fourcc;
+  for (const auto& [alias, fourcc] : kAliases) {
+    if (alias == upper) return fourcc;
   }
   return std::nullopt;
 }

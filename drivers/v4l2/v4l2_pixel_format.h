@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-#include "drivers/bayer.h"
+#include "drivers/raw_pixels.h"
 
 namespace camloc {
 
@@ -25,7 +25,7 @@ enum class PixelLayout : std::uint8_t {
   kJpeg,     ///< one JPEG image a frame
   kWords,    ///< 16 bits, low byte first
   kWordsBe,  ///< 16 bits, high byte first
-  kPacked,   ///< 10 or 11 bits without gaps, see packed_pixels.h
+  kPacked,   ///< 10 or 11 bits without gaps, see raw_pixels.h
 };
 
 /// What a node is wanted for: the grey (or colour, or infrared) image, or depth.

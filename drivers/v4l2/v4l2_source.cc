@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-//
-// See v4l2_source.h.
 #include "drivers/v4l2/v4l2_source.h"
 
 #include <linux/usbdevice_fs.h>
@@ -59,21 +57,15 @@ struct Channel {
 class V4l2Source final : public FrameSource {
  public:
   explicit V4l2Source(V4l2Opened opened)
-      : io_(std::move(opened.io)),
-        image_{std::move(opened.image), {}},
-        depth_{std::move(opened.depth), {}},
-        info_(std::move(opened.info)),
-        usb_node_(std::move(opened.usb_node)),
-        settings_(std::move(opened.settings)),
-        gives_color_(opened.gives_color) {
+      : opened_(std::move(opened)), image_{std::move(opened_.image), {}}, depth_{std::move(opened_.depth), {}} {
     describe();
   }
 
-  [[nodiscard]] const FrameSourceInfo& info() const override { return info_; }
+  [[nodiscard]] const FrameSourceInfo& info() const override { return opened_.info; }
 
   [[nodiscard]] Status next(FrameBuffer* frame, std::chrono::milliseconds timeout) override {
     if (is_closed()) return {ErrorCode::kUnavailable, "v4l2://: the device was reset; open it again"};
-    const std::int64_t deadline_ns = io_->monotonic_ns() + timeout.count() * kNsPerMs;
+    const std::int64_t deadline_ns = opened_.io->monotonic_ns() + timeout.count() * kNsPerMs;
     for (int turn = 0; turn < kMaxTurns; ++turn) {
       for (Channel* channel : channels()) {
         if (Status status = fill(channel); !status) return status;
@@ -115,18 +107,18 @@ class V4l2Source final : public FrameSource {
   }
 
   [[nodiscard]] Status reset_device() override {
-    if (usb_node_.empty()) return {ErrorCode::kUnsupported, "v4l2://: the camera is not on USB"};
-    const V4l2Fd device(*io_, io_->open(usb_node_));
+    if (opened_.usb_node.empty()) return {ErrorCode::kUnsupported, "v4l2://: the camera is not on USB"};
+    const V4l2Fd device(*opened_.io, opened_.io->open(opened_.usb_node));
     if (device.get() < 0)
-      return {ErrorCode::kUnsupported, usb_node_ + ": " + errno_text(device.get()) + "; a reset needs the right to write to it"};
+      return {ErrorCode::kUnsupported, opened_.usb_node + ": " + errno_text(device.get()) + "; a reset needs the right to write to it"};
     for (Channel* channel : channels()) {
       channel->pending.reset();
       channel->stream.reset();
     }
-    const int error = io_->ioctl(device.get(), USBDEVFS_RESET, nullptr);
+    const int error = opened_.io->ioctl(device.get(), USBDEVFS_RESET, nullptr);
     // The device may come back as another one, which is a success.
     if (error == 0 || error == -ENODEV) return Status::ok();
-    return {ErrorCode::kUnavailable, usb_node_ + ": reset failed (" + errno_text(error) + ")"};
+    return {ErrorCode::kUnavailable, opened_.usb_node + ": reset failed (" + errno_text(error) + ")"};
   }
 
  private:
@@ -137,13 +129,10 @@ class V4l2Source final : public FrameSource {
   Status fill(Channel* channel) {
     if (!channel->lacks_frame()) return Status::ok();
     V4l2Frame frame;
-    switch (channel->stream->take(&frame)) {
-      case V4l2Stream::Take::kFrame: channel->pending = frame; return Status::ok();
-      case V4l2Stream::Take::kGone: return channel->stream->problem();
-      case V4l2Stream::Take::kDamaged: return channel->stream->damage();
-      case V4l2Stream::Take::kNothing: break;
-    }
-    if (!channel->has_error) return Status::ok();
+    const Result<bool> has_frame = channel->stream->take(&frame);
+    if (!has_frame) return has_frame.status();
+    if (*has_frame) channel->pending = frame;
+    if (*has_frame || !channel->has_error) return Status::ok();
     return {ErrorCode::kUnavailable, channel->stream->device().path() + ": the driver reports an error and gives no frame"};
   }
 
@@ -177,18 +166,18 @@ class V4l2Source final : public FrameSource {
       fds[count] = {channel->stream->device().fd(), POLLIN, 0};
       waiting[count++] = channel;
     }
-    const std::int64_t left_ns = std::max<std::int64_t>(deadline_ns - io_->monotonic_ns(), 0);
-    const int ready = io_->poll(fds.data(), count, static_cast<int>((left_ns + kNsPerMs - 1) / kNsPerMs));
+    const std::int64_t left_ns = std::max<std::int64_t>(deadline_ns - opened_.io->monotonic_ns(), 0);
+    const int ready = opened_.io->poll(fds.data(), count, static_cast<int>((left_ns + kNsPerMs - 1) / kNsPerMs));
     if (ready < 0) return {ErrorCode::kUnavailable, "v4l2://: poll: " + errno_text(ready)};
     for (std::size_t i = 0; i < count; ++i) waiting[i]->has_error = (fds[i].revents & (POLLERR | POLLHUP | POLLNVAL)) != 0;
-    *is_late = ready == 0 && io_->monotonic_ns() >= deadline_ns;
+    *is_late = ready == 0 && opened_.io->monotonic_ns() >= deadline_ns;
     return Status::ok();
   }
 
   Status deliver(FrameBuffer* frame) {
     Channel& main = main_channel();
     frame->sequence = main.pending->exposure;
-    frame->stamp_ns = main.pending->stamp_ns + settings_.stamp_offset_ns;
+    frame->stamp_ns = main.pending->stamp_ns + opened_.stamp_offset_ns;
     if (main.stream->stamp_source() != described_source_) describe();
     Status status = convert(frame);
     for (Channel* channel : channels()) channel->release();
@@ -199,29 +188,25 @@ class V4l2Source final : public FrameSource {
   Status convert(FrameBuffer* frame) {
     if (!image_.stream) frame->gray.resize(0, 0);
     if (!depth_.stream) frame->depth.resize(0, 0);
-    if (!gives_color_) frame->color.resize(0, 0);
+    if (!opened_.gives_color) frame->color.resize(0, 0);
     if (depth_.stream) convert_to_depth(depth_.stream->layout(), depth_.pending->planes, &frame->depth);
     if (!image_.stream) return Status::ok();
     const V4l2ImageLayout& layout = image_.stream->layout();
-    const unsigned bits = settings_.gray_bits.value_or(layout.format->significant_bits);
-    if (Status status = convert_to_gray(layout, image_.pending->planes, bits, &frame->gray); !status || !gives_color_) return status;
+    const unsigned bits = opened_.gray_bits.value_or(layout.format->significant_bits);
+    if (Status status = convert_to_gray(layout, image_.pending->planes, bits, &frame->gray); !status || !opened_.gives_color) return status;
     return convert_to_bgr(layout, image_.pending->planes, &scratch_, &frame->color);
   }
 
   void describe() {
     described_source_ = main_channel().stream->stamp_source();
-    info_.description.clear();
-    if (image_.stream) info_.description = stream_text(*image_.stream);
-    if (depth_.stream) info_.description += (image_.stream ? ", depth " : "depth ") + stream_text(*depth_.stream);
-    info_.description += "; " + stamp_text(described_source_);
+    opened_.info.description.clear();
+    if (image_.stream) opened_.info.description = stream_text(*image_.stream);
+    if (depth_.stream) opened_.info.description += (image_.stream ? ", depth " : "depth ") + stream_text(*depth_.stream);
+    opened_.info.description += "; " + stamp_text(described_source_);
   }
 
-  std::shared_ptr<V4l2Io> io_;
-  Channel image_, depth_;  // after io_, which they use until they are gone
-  FrameSourceInfo info_;
-  std::string usb_node_;
-  V4l2Settings settings_;
-  bool gives_color_;
+  V4l2Opened opened_;
+  Channel image_, depth_;  // after opened_.io, which they use until they are gone
   V4l2StampSource described_source_ = V4l2StampSource::kArrival;
   std::uint64_t num_unpaired_ = 0;
   std::uint64_t num_undecoded_ = 0;

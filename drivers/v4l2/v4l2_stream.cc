@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// See v4l2_stream.h. Every number that comes back from the driver is compared with what was mapped before a byte is read.
+// Every number that comes back from the driver is compared with what was mapped before a byte is read.
 #include "drivers/v4l2/v4l2_stream.h"
 
 #include <linux/videodev2.h>
@@ -60,9 +60,6 @@ std::optional<std::int64_t> believable_ns(const timeval& stamp, std::int64_t now
 
 }  // namespace
 
-V4l2Stream::V4l2Stream(V4l2Device device, const V4l2Agreement& agreement)
-    : device_(std::move(device)), layout_(agreement.layout), rate_hz_(agreement.rate_hz) {}
-
 V4l2Stream::~V4l2Stream() {
   stop();
   unmap_buffers();
@@ -98,10 +95,10 @@ Status V4l2Stream::map_buffer(unsigned index, Buffer* buffer) {
     return {ErrorCode::kUnavailable, device_.path() + ": no buffer " + std::to_string(index) + " (" + errno_text(error) + ")"};
   }
   stamp_source_ = declared_source(request.buffer.flags);
-  for (unsigned plane = 0; plane < layout_.format->num_planes; ++plane) {
+  for (unsigned plane = 0; plane < agreed_.layout.format->num_planes; ++plane) {
     const std::size_t length = device_.is_multiplanar() ? request.planes[plane].length : request.buffer.length;
     const std::uint32_t offset = device_.is_multiplanar() ? request.planes[plane].m.mem_offset : request.buffer.m.offset;
-    const std::size_t needed = min_plane_bytes(*layout_.format, plane, layout_.width, layout_.height, layout_.stride_bytes[plane]);
+    const std::size_t needed = agreed_.layout.plane_bytes(plane);
     if (length < std::max<std::size_t>(needed, 1) || length > kMaxV4l2BufferBytes) {
       return {ErrorCode::kCorrupt, device_.path() + ": the driver (" + device_.driver() + ") contradicts itself: a buffer of " +
                                        std::to_string(length) + " bytes for frames of " + std::to_string(needed)};
@@ -128,7 +125,7 @@ Status V4l2Stream::start() {
   for (unsigned i = 0; i < buffers_.size() && error_ == 0; ++i) error_ = queue(i);
   auto type = static_cast<int>(device_.buffer_type());
   if (error_ == 0) error_ = device_.ioctl(VIDIOC_STREAMON, &type);
-  return error_ == 0 ? Status::ok() : problem();
+  return error_ == 0 ? Status::ok() : gone();
 }
 
 void V4l2Stream::stop() {
@@ -139,75 +136,71 @@ void V4l2Stream::stop() {
 
 int V4l2Stream::queue(unsigned index) {
   BufferRequest request(device_, index);
-  if (device_.is_multiplanar()) request.buffer.length = layout_.format->num_planes;
+  if (device_.is_multiplanar()) request.buffer.length = agreed_.layout.format->num_planes;
   const int error = device_.ioctl(VIDIOC_QBUF, &request.buffer);
   buffers_[index].is_queued = error == 0;
   return error;
 }
 
-V4l2Stream::Take V4l2Stream::take(V4l2Frame* frame) {
-  if (error_ != 0) return Take::kGone;
+Result<bool> V4l2Stream::take(V4l2Frame* frame) {
+  if (error_ != 0) return gone();
   BufferRequest request(device_, 0);
   const int error = device_.ioctl(VIDIOC_DQBUF, &request.buffer);
   request.restore_planes(device_);
-  if (error == -EAGAIN) return Take::kNothing;
+  if (error == -EAGAIN) return false;
   const unsigned index = request.buffer.index;
   const bool is_ours = error == 0 && index < buffers_.size() && buffers_[index].is_queued;
   if (!is_ours) {
     error_ = error != 0 ? error : -EPROTO;  // a buffer that the driver does not have
-    return Take::kGone;
+    return gone();
   }
   buffers_[index].is_queued = false;
   frame->index = index;
   frame->planes = buffers_[index].planes;
   count_exposure(request.buffer.sequence);
   frame->exposure = exposure_;
-  is_marked_ = (request.buffer.flags & V4L2_BUF_FLAG_ERROR) != 0;
-  if (is_marked_ || !read_planes(request.buffer, &frame->planes)) {
+  if (Status status = read_planes(request.buffer, &frame->planes); !status) {
     ++num_damaged_;
     give_back(*frame);
-    return Take::kDamaged;
+    return status;
   }
   frame->stamp_ns = stamp(request.buffer);
-  return Take::kFrame;
+  return true;
 }
 
 void V4l2Stream::give_back(const V4l2Frame& frame) {
   if (const int error = queue(frame.index); error != 0 && error_ == 0) error_ = error;
 }
 
-Status V4l2Stream::problem() const {
+Status V4l2Stream::gone() const {
   if (error_ == -EPROTO)
     return {ErrorCode::kUnavailable, device_.path() + ": the driver (" + device_.driver() + ") hands out buffers that it does not have"};
   return {ErrorCode::kUnavailable, device_.path() + ": the camera is gone (" + errno_text(error_) + ")"};
 }
 
-Status V4l2Stream::damage() const {
-  if (is_marked_) return {ErrorCode::kCorrupt, device_.path() + ": the driver marked a frame as broken"};
-  return {ErrorCode::kCorrupt, device_.path() + ": a frame of " + std::to_string(damaged_bytes_) + " bytes where there should be " +
-                                   std::to_string(damaged_needed_)};
-}
-
-// Narrows `planes` to the bytes of this frame; false where some are missing or more are claimed than there is room for.
-bool V4l2Stream::read_planes(const v4l2_buffer& buffer, V4l2Planes* planes) {
-  for (unsigned plane = 0; plane < layout_.format->num_planes; ++plane) {
+// Narrows `planes` to the bytes of this frame; kCorrupt where some are missing or more are claimed than there is room for.
+Status V4l2Stream::read_planes(const v4l2_buffer& buffer, V4l2Planes* planes) const {
+  if ((buffer.flags & V4L2_BUF_FLAG_ERROR) != 0) return {ErrorCode::kCorrupt, device_.path() + ": the driver marked a frame as broken"};
+  for (unsigned plane = 0; plane < agreed_.layout.format->num_planes; ++plane) {
     std::span<const std::uint8_t>& bytes = (*planes)[plane];
     const std::size_t end = device_.is_multiplanar() ? buffer.m.planes[plane].bytesused : buffer.bytesused;
     const std::size_t begin = device_.is_multiplanar() ? buffer.m.planes[plane].data_offset : 0;
-    const std::size_t needed = min_plane_bytes(*layout_.format, plane, layout_.width, layout_.height, layout_.stride_bytes[plane]);
-    damaged_bytes_ = end - std::min(begin, end);
-    damaged_needed_ = std::max<std::size_t>(needed, 1);
-    if (end > bytes.size() || damaged_bytes_ < damaged_needed_) return false;
-    bytes = bytes.subspan(begin, damaged_bytes_);
+    const std::size_t size = end - std::min(begin, end);
+    const std::size_t needed = std::max<std::size_t>(agreed_.layout.plane_bytes(plane), 1);
+    if (end > bytes.size() || size < needed) {
+      return {ErrorCode::kCorrupt,
+              device_.path() + ": a frame of " + std::to_string(size) + " bytes where there should be " + std::to_string(needed)};
+    }
+    bytes = bytes.subspan(begin, size);
   }
-  return true;
+  return Status::ok();
 }
 
 // Reading out and sending a frame takes most of the time between two, so a stamp of its end is put one interval earlier. What is
 // left of the error is less than an interval, and the same for every frame.
 std::int64_t V4l2Stream::stamp(const v4l2_buffer& buffer) {
   const std::int64_t now_ns = device_.io().monotonic_ns();
-  const std::int64_t interval_ns = rate_hz_ > 0 ? std::llround(1e9 / rate_hz_) : 0;
+  const std::int64_t interval_ns = agreed_.rate_hz > 0 ? std::llround(1e9 / agreed_.rate_hz) : 0;
   stamp_source_ = declared_source(buffer.flags);
   std::optional<std::int64_t> stamp_ns;
   if (stamp_source_ != V4l2StampSource::kArrival) stamp_ns = believable_ns(buffer.timestamp, now_ns);

@@ -4,11 +4,10 @@
 // A node that streams: four buffers shared with the kernel go round, each is looked at where it lies and given back.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/result.h"
@@ -50,18 +49,14 @@ class V4l2Stream {
   /// Takes all buffers back; what was not given back is void.
   void stop();
 
-  enum class Take { kFrame, kNothing, kDamaged, kGone };
-  /// The oldest finished frame. kDamaged: the driver marked it or bytes are missing, it is given back already; kGone: see
-  /// problem().
-  [[nodiscard]] Take take(V4l2Frame* frame);
+  /// The oldest finished frame; false: none yet. kCorrupt: the driver marked it or bytes are missing, it is given back already;
+  /// kUnavailable: the camera is gone, and for good.
+  [[nodiscard]] Result<bool> take(V4l2Frame* frame);
   void give_back(const V4l2Frame& frame);
-  [[nodiscard]] Status problem() const;
-  /// What was wrong with the last damaged frame (kCorrupt).
-  [[nodiscard]] Status damage() const;
 
   [[nodiscard]] const V4l2Device& device() const { return device_; }
-  [[nodiscard]] const V4l2ImageLayout& layout() const { return layout_; }
-  [[nodiscard]] double rate_hz() const { return rate_hz_; }  ///< 0: the device does not tell
+  [[nodiscard]] const V4l2ImageLayout& layout() const { return agreed_.layout; }
+  [[nodiscard]] double rate_hz() const { return agreed_.rate_hz; }  ///< 0: the device does not tell
   /// Of the last frame; before the first what the buffers announce.
   [[nodiscard]] V4l2StampSource stamp_source() const { return stamp_source_; }
   [[nodiscard]] std::uint64_t num_lost() const { return num_lost_; }  ///< gaps in the driver's count
@@ -73,18 +68,18 @@ class V4l2Stream {
     bool is_queued = false;
   };
 
-  V4l2Stream(V4l2Device device, const V4l2Agreement& agreement);
+  V4l2Stream(V4l2Device device, const V4l2Agreement& agreement) : device_(std::move(device)), agreed_(agreement) {}
   [[nodiscard]] Status map_buffers();
   [[nodiscard]] Status map_buffer(unsigned index, Buffer* buffer);
   void unmap_buffers();
   [[nodiscard]] int queue(unsigned index);
-  [[nodiscard]] bool read_planes(const v4l2_buffer& buffer, V4l2Planes* planes);
+  [[nodiscard]] Status gone() const;
+  [[nodiscard]] Status read_planes(const v4l2_buffer& buffer, V4l2Planes* planes) const;
   [[nodiscard]] std::int64_t stamp(const v4l2_buffer& buffer);
   void count_exposure(std::uint32_t sequence);
 
   V4l2Device device_;
-  V4l2ImageLayout layout_;
-  double rate_hz_;
+  V4l2Agreement agreed_;
   std::vector<Buffer> buffers_;
   int error_ = 0;  ///< negative errno of the call after which nothing works any more
   V4l2StampSource stamp_source_ = V4l2StampSource::kArrival;
@@ -93,9 +88,6 @@ class V4l2Stream {
   std::uint64_t exposure_ = 0;
   std::uint64_t num_lost_ = 0;
   std::uint64_t num_damaged_ = 0;
-  bool is_marked_ = false;          ///< the last damaged frame, by the driver
-  std::size_t damaged_bytes_ = 0;   ///< what else there was of it
-  std::size_t damaged_needed_ = 0;  ///< and should have been
 };
 
 }  // namespace camloc

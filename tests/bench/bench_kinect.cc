@@ -4,10 +4,8 @@
 // What a pair of Kinect images costs, step by step, from its packets to a frame.
 #include <benchmark/benchmark.h>
 
-#include "drivers/bayer.h"
 #include "drivers/kinect/kinect_depth.h"
-#include "drivers/kinect/kinect_registration.h"
-#include "drivers/packed_pixels.h"
+#include "drivers/raw_pixels.h"
 #include "tests/drivers/kinect_packet_maker.h"
 
 namespace camloc::kinect {
@@ -27,7 +25,7 @@ KinectCalibration sample_calibration() {
   calibration.zero_plane = ZeroPlane{};
   calibration.const_shift = 200;
   calibration.registration = RegistrationBlock{};
-  calibration.registration->dx_start = 6161;
+  calibration.registration->x.start = 6161;
   calibration.registration->dy_start = 6434;
   return calibration;
 }

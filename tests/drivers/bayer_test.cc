@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/bayer.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <random>
 #include <string>
+
+#include "drivers/raw_pixels.h"
 
 namespace camloc {
 namespace {

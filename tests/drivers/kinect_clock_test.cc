@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "drivers/kinect/counter_clock.h"
+#include "drivers/device_clock.h"
 #include "drivers/kinect/kinect_protocol.h"
 
 namespace camloc::kinect {

@@ -199,7 +199,7 @@ TEST(KinectControl, ReadsTheCalibration) {
   ASSERT_TRUE(result.is_ok()) << result.status().message();
   const KinectCalibration& calibration = *result;
   ASSERT_TRUE(calibration.registration);
-  EXPECT_EQ(calibration.registration->dx_start, 0x1811);
+  EXPECT_EQ(calibration.registration->x.start, 0x1811);
   ASSERT_TRUE(calibration.zero_plane);
   EXPECT_NEAR(calibration.zero_plane->pixel_size_cm, 0.1042, 1e-6);
   EXPECT_NEAR(calibration.zero_plane->focal_px(), 575.8, 0.1);

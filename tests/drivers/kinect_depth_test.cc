@@ -9,8 +9,7 @@
 #include <random>
 
 #include "drivers/kinect/kinect_protocol.h"
-#include "drivers/kinect/kinect_registration.h"
-#include "drivers/packed_pixels.h"
+#include "drivers/raw_pixels.h"
 
 namespace camloc::kinect {
 namespace {
@@ -27,20 +26,15 @@ KinectCalibration calibrated() {
 /// A displacement by `dx`, `dy` pixels everywhere: only the constant terms.
 RegistrationBlock constant_block(double dx, double dy) {
   RegistrationBlock block;
-  block.dx_start = static_cast<std::int32_t>(std::lround(dx * 256));  // fixed point, 8 bits
-  block.dy_start = static_cast<std::int32_t>(std::lround(dy * 256));
+  block.x.start = static_cast<std::int32_t>(std::lround(dx * 256));  // fixed point, 8 bits
+  block.y.start = static_cast<std::int32_t>(std::lround(dy * 256));
   return block;
 }
 
 /// The published coefficients of one Kinect (OpenKinect), with which displacements of 17 to 31 pixels are known to come out.
 RegistrationBlock real_block() {
-  RegistrationBlock b;
-  b.ax = 1964, b.bx = 56, b.cx = -26, b.dx = 600, b.dx_start = 6161;
-  b.ay = -13, b.by = 2825, b.cy = 684, b.dy = 5, b.dy_start = 6434;
-  b.dxdx_start = 2095986, b.dxdy_start = 890, b.dydx_start = 763, b.dydy_start = 2096378;
-  b.dxdxdx_start = 134215474, b.dydxdx_start = 134217093, b.dxdxdy_start = 134216989, b.dydxdy_start = 134216925;
-  b.dydydx_start = 134216984, b.dydydy_start = 134214659;
-  return b;
+  return {{1964, 56, -26, 600, 6161, 2095986, 763, 134215474, 134217093, 134216984},
+          {-13, 2825, 684, 5, 6434, 890, 2096378, 134216989, 134216925, 134214659}};
 }
 
 TEST(KinectDepth, FullFrameUnpacksLikeBitByBit) {

@@ -7,7 +7,6 @@
 #include <atomic>
 #include <thread>
 
-#include "drivers/kinect/frame_pairing.h"
 #include "tests/drivers/kinect_packet_maker.h"
 
 namespace camloc::kinect {

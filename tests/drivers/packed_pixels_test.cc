@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/packed_pixels.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
 #include <vector>
+
+#include "drivers/raw_pixels.h"
 
 namespace camloc {
 namespace {

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <random>
 
-#include "drivers/packed_pixels.h"
+#include "drivers/raw_pixels.h"
 #include "tests/drivers/test_folder.h"
 
 namespace camloc {

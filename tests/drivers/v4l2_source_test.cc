@@ -425,6 +425,8 @@ TEST_F(V4l2Source, ResetOfTheUsbDevice) {
   ASSERT_EQ(next(), ErrorCode::kOk) << "and still alive";
   source_.reset();
 
+  folder_.write("sys/devices/usb1/idVendor", "8086\n");
+  folder_.write("sys/devices/usb1/idProduct", "0ad2\n");
   folder_.write("sys/devices/usb1/busnum", "3\n");
   folder_.write("sys/devices/usb1/devnum", "14\n");
   folder_.write("sys/devices/usb1/serial", "S1\n");

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "drivers/kinect/kinect_control.h"
+#include "drivers/kinect/kinect_depth.h"
 #include "drivers/kinect/kinect_motor.h"
-#include "drivers/kinect/kinect_registration.h"
 
 namespace {
 

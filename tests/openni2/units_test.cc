@@ -7,11 +7,10 @@
 #include <random>
 #include <vector>
 
-#include "drivers/openni2/depth_codec.h"
 #include "drivers/openni2/field_of_view.h"
 #include "drivers/openni2/installation.h"
+#include "drivers/openni2/openni2_device.h"
 #include "drivers/openni2/pixel_layout.h"
-#include "drivers/openni2/video_mode.h"
 
 namespace camloc::openni2 {
 namespace {
@@ -22,28 +21,28 @@ TEST(OniDepthCodec, DecodesEveryCode) {
   // First value, two steps, padding half byte, long step, full value, twice the same three times.
   const Bytes bytes{0x10, 0x00, 0x57, 0x6D, 0xFF, 192 - 60, 0x5F, 0x01, 0x02, 0xE3, 0xFF, 0x03, 0x04};
   std::vector<std::uint16_t> depth(14);
-  ASSERT_TRUE(decode_depth_codec(DepthCodec::k16z, bytes, depth));
+  ASSERT_TRUE(decode_depth_codec(OniCodec::k16z, bytes, depth));
   EXPECT_EQ(depth, (std::vector<std::uint16_t>{16, 17, 16, 16, 76, 77, 0x102, 0x102, 0x102, 0x102, 0x102, 0x102, 0x102, 0x304}));
 }
 
 TEST(OniDepthCodec, LooksUpTheTable) {
   const Bytes bytes{0x02, 0x00, 0x64, 0x00, 0xC8, 0x00, 0x01, 0x00, 0x76};
   std::vector<std::uint16_t> depth(3);
-  ASSERT_TRUE(decode_depth_codec(DepthCodec::k16zTable, bytes, depth));
+  ASSERT_TRUE(decode_depth_codec(OniCodec::k16zTable, bytes, depth));
   EXPECT_EQ(depth, (std::vector<std::uint16_t>{200, 100, 100}));
 }
 
 TEST(OniDepthCodec, RefusesWhatDoesNotFit) {
   std::vector<std::uint16_t> depth(3);
-  const auto code_of = [&depth](DepthCodec codec, const Bytes& bytes) { return decode_depth_codec(codec, bytes, depth).code(); };
-  EXPECT_EQ(code_of(DepthCodec::k16z, {}), ErrorCode::kCorrupt);
-  EXPECT_EQ(code_of(DepthCodec::k16z, {1}), ErrorCode::kCorrupt);
-  EXPECT_EQ(code_of(DepthCodec::k16z, {1, 0}), ErrorCode::kCorrupt);                         // too few pixels
-  EXPECT_EQ(code_of(DepthCodec::k16z, {1, 0, 0xE2}), ErrorCode::kCorrupt);                   // too many
-  EXPECT_EQ(code_of(DepthCodec::k16z, {1, 0, 0x66, 0xFF, 1}), ErrorCode::kCorrupt);          // half a value
-  EXPECT_EQ(code_of(DepthCodec::k16zTable, {5, 0, 1, 0}), ErrorCode::kCorrupt);              // table beyond the end
-  EXPECT_EQ(code_of(DepthCodec::k16zTable, {1, 0, 9, 0, 0, 0, 0x56}), ErrorCode::kCorrupt);  // index beyond the table
-  EXPECT_EQ(code_of(DepthCodec::k16zTable, {0, 0, 0, 0, 0x66}), ErrorCode::kCorrupt);
+  const auto code_of = [&depth](OniCodec codec, const Bytes& bytes) { return decode_depth_codec(codec, bytes, depth).code(); };
+  EXPECT_EQ(code_of(OniCodec::k16z, {}), ErrorCode::kCorrupt);
+  EXPECT_EQ(code_of(OniCodec::k16z, {1}), ErrorCode::kCorrupt);
+  EXPECT_EQ(code_of(OniCodec::k16z, {1, 0}), ErrorCode::kCorrupt);                         // too few pixels
+  EXPECT_EQ(code_of(OniCodec::k16z, {1, 0, 0xE2}), ErrorCode::kCorrupt);                   // too many
+  EXPECT_EQ(code_of(OniCodec::k16z, {1, 0, 0x66, 0xFF, 1}), ErrorCode::kCorrupt);          // half a value
+  EXPECT_EQ(code_of(OniCodec::k16zTable, {5, 0, 1, 0}), ErrorCode::kCorrupt);              // table beyond the end
+  EXPECT_EQ(code_of(OniCodec::k16zTable, {1, 0, 9, 0, 0, 0, 0x56}), ErrorCode::kCorrupt);  // index beyond the table
+  EXPECT_EQ(code_of(OniCodec::k16zTable, {0, 0, 0, 0, 0x66}), ErrorCode::kCorrupt);
 }
 
 TEST(OniDepthCodec, SurvivesRandomBytes) {
@@ -53,7 +52,7 @@ TEST(OniDepthCodec, SurvivesRandomBytes) {
     Bytes bytes(random() % 60);
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
     if (bytes.size() > 2) bytes[1] = 0;
-    (void)decode_depth_codec(i % 2 == 0 ? DepthCodec::k16z : DepthCodec::k16zTable, bytes, depth);
+    (void)decode_depth_codec(i % 2 == 0 ? OniCodec::k16z : OniCodec::k16zTable, bytes, depth);
   }
 }
 
