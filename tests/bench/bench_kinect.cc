@@ -26,7 +26,7 @@ KinectCalibration sample_calibration() {
   calibration.const_shift = 200;
   calibration.registration = RegistrationBlock{};
   calibration.registration->x.start = 6161;
-  calibration.registration->dy_start = 6434;
+  calibration.registration->y.start = 6434;
   return calibration;
 }
 
