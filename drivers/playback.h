@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/io/frame_selection.h"
+#include "core/io/sequence.h"
 #include "drivers/frame_source.h"
 #include "drivers/source_url.h"
 
