@@ -49,10 +49,12 @@ std::vector<const Kernels*> available_kernels() {
   return kernels;
 }
 
-const Kernels& best_kernels() {
-  static const Kernels& best = *available_kernels().back();
-  return best;
-}
+namespace {
+/// Chosen before main(): the first frame must not allocate.
+const Kernels& kBestKernels = *available_kernels().back();
+}  // namespace
+
+const Kernels& best_kernels() { return kBestKernels; }
 
 void nearest_two(const Kernels& kernels, const Descriptor* queries, std::size_t num_queries, const Descriptor* train, std::size_t num_train,
                  TopTwo* top) {
