@@ -31,6 +31,7 @@ class MapSlot {
 
   [[nodiscard]] bool is_loaded() const { return loaded_ != nullptr; }
   [[nodiscard]] const MapInfo& info() const { return loaded_->view.info(); }
+  [[nodiscard]] bool knows_look_alikes() const { return !loaded_->view.section(map_format::kTwins).empty(); }
   [[nodiscard]] Localizer& localizer() { return *loaded_->localizer; }
   /// A page could not be read: the file was cut while mapped.
   [[nodiscard]] bool is_damaged() const { return loaded_->view.is_damaged(); }

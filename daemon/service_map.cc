@@ -66,6 +66,9 @@ void Service::announce_map() {
   board_.set_map(map_.path(), info.map_id);
   log_.write(LogLevel::kInfo, "map open: %s, id %016llx, %u landmarks, %u keyframes", map_.path().c_str(),
              static_cast<unsigned long long>(info.map_id), info.num_landmarks, info.num_keyframes);
+  if (!map_.knows_look_alikes())
+    log_.write(LogLevel::kWarning, "the map does not know its look-alikes, and a pose may be at one: camloc map upgrade %s",
+               map_.path().c_str());
 }
 
 void Service::drop_map(const std::string& why) {

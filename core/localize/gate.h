@@ -11,14 +11,14 @@
 #include "core/localize/localization.h"
 #include "core/localize/localizer_numbers.h"
 #include "core/localize/motion_model.h"
-#include "core/registration/pose_evidence.h"
+#include "core/registration/rivals.h"
 
 namespace camloc {
 
 /// The best pose for a frame, together with the verdict on it.
 struct Candidate {
   PoseEvidence evidence{};
-  double margin = 1;                    ///< see margin_of()
+  Standing standing{};
   bool is_continuation = false;         ///< found where the motion so far predicts it
   bool overrides_motion = false;        ///< found where somebody said, who knows better
   Reason reason = Reason::kNotStarted;  ///< kNone: verified

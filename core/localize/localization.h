@@ -9,7 +9,7 @@
 
 #include "core/base/stage_timer.h"
 #include "core/geometry/rigid3.h"
-#include "core/registration/pose_evidence.h"
+#include "core/registration/rivals.h"
 
 namespace camloc {
 
@@ -57,7 +57,7 @@ struct Localization {
   bool is_tracked = false;                 ///< found from the prediction, not by global search
   std::uint32_t num_features = 0;
   PoseEvidence evidence;                            ///< of the pose, or of the best candidate for one; before motion and map are asked
-  double margin = 1;                                ///< 1 - inliers of the best rival place / inliers
+  Standing standing;                                ///< of that pose against rival places
   std::uint32_t reset_counter = 0;                  ///< grows with every global fix: poses before and after may differ by a jump
   double jump_m = 0;                                ///< size of that jump, 0 while tracking
   std::array<std::int64_t, kNumStages> stage_ns{};  ///< zero when no clock was given

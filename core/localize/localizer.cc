@@ -7,6 +7,7 @@
 #include "core/localize/localizer.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/localize/verification.h"
 #include "core/registration/rivals.h"
@@ -18,6 +19,8 @@ namespace {
 constexpr int kMaxCandidates = 8000;
 /// Sampling is seeded by the frame and the place: seeds of neighbouring frames do not meet.
 constexpr std::uint64_t kSeedsPerFrame = 8;
+/// A rival that was found this close to where the map names one was asked already.
+constexpr RivalDistance kSamePlace{.position_m = 0.5, .rotation_rad = 0.35};
 
 /// A pose before none, more evidence before less; of what is no pose the last word.
 bool is_better(const Candidate& candidate, const Candidate& best) {
@@ -32,8 +35,15 @@ Matrix6d coarse_uncertainty() {
   return variance.asDiagonal();
 }
 
-/// Levels of image and map must be the same ones: the map rules.
-LocalizerOptions with_pyramid_of(const MapView& map, LocalizerOptions options) {
+/// Cubes of 4 m that a room has with what is seen through its door.
+constexpr double kCubesOfRoom = 8;
+
+/// Levels of image and map must be the same ones: the map rules. A pose that is the best of many places is right by more inliers only.
+LocalizerOptions fitted_to(const MapView& map, LocalizerOptions options) {
+  const double doublings = std::max(0.0, std::log2(static_cast<double>(map.cubes().size()) / kCubesOfRoom));
+  const auto more = static_cast<std::uint32_t>(options.numbers.inliers_per_doubling * doublings);
+  options.numbers.min_inliers += more;
+  options.numbers.min_inliers_no_depth += more;
   options.orb.scale_factor = map.info().orb_scale_factor;
   options.orb.num_levels = static_cast<int>(map.info().orb_num_levels);
   return options;
@@ -65,17 +75,18 @@ Localizer::Localizer(const MapView& map, const RgbdCamera& camera, const Localiz
                      std::span<const ProposerEntry> proposers)
     : map_(&map),
       camera_(camera),
-      options_(with_pyramid_of(map, options)),
+      options_(fitted_to(map, options)),
       timer_(options_.now_ns),
       extractor_(camera, options_.orb, options_.use_depth),
-      landmarks_(map, camera.color, landmark_options(options_.numbers)),
+      rivals_(map, options_.numbers),
+      landmarks_(map, camera.color, landmark_options(options_.numbers), &rivals_.look_alikes()),
       solver_(camera, PyramidLevels(options_.orb.scale_factor, options_.orb.num_levels), solver_options(options_), &timer_),
       list_(map.info().max_keyframe_landmarks),
       visit_of_landmark_(map.landmarks().size(), 0),
       gate_(options_.numbers, options_.use_tracking),
       calibration_(options_.numbers) {
   view_.reserve(static_cast<std::size_t>(options_.orb.num_features));
-  found_.reserve(2 * static_cast<std::size_t>(std::max(1, options_.numbers.max_places)));
+  found_.reserve(2 * static_cast<std::size_t>(std::max(1, options_.numbers.max_places)) + 2 * rivals_.capacity());
   for (const ProposerEntry& entry : proposers)
     proposers_.push_back(entry.make({map_, &camera_, &options_.numbers, options_.orb.num_features}));
 }
@@ -127,20 +138,51 @@ Reason Localizer::observe(const Frame& frame) {
   return view_.size() < options_.numbers.min_features ? Reason::kFewFeatures : Reason::kNone;
 }
 
-// The pose with the most inliers; what else was found says how far it stands out.
+// The pose with the most inliers; what else was found says how far it stands out. Before a place is believed, those that the map calls
+// its look-alikes are asked, too.
 Candidate Localizer::examine(const Frame& frame, std::span<const Proposal> proposals) {
   if (proposals.empty()) return {.reason = Reason::kNoCandidates};
-  proposals = proposals.first(std::min(proposals.size(), found_.capacity() / 2));
+  proposals = proposals.first(std::min(proposals.size(), static_cast<std::size_t>(std::max(1, options_.numbers.max_places))));
   found_.clear();
-  for (std::size_t i = 0; i < proposals.size(); ++i) solve(proposals[i], frame.sequence * kSeedsPerFrame + i);
+  const std::uint64_t seed = frame.sequence * kSeedsPerFrame;
+  for (std::size_t i = 0; i < proposals.size(); ++i) solve(proposals[i], seed + i);
   Candidate best{.is_continuation = proposals.front().is_continuation, .overrides_motion = proposals.front().overrides_motion};
-  for (const PoseEvidence& found : found_) {
-    if (!best.evidence.is_found || found.num_inliers > best.evidence.num_inliers) best.evidence = found;
+  // A rival that explains more has rivals of its own.
+  for (int round = 0; round < 2 && !best.is_continuation; ++round) {
+    const std::size_t before = best_of_found();
+    ask_rivals(&found_[before], seed);
+    if (best_of_found() == before) break;
   }
-  best.margin = margin_of(found_, best.evidence, {options_.numbers.rival_distance_m, options_.numbers.rival_angle_rad});
-  best.reason = verify(best.evidence, best.margin, best.is_continuation, options_.numbers);
+  const Hypothesis& found = found_[best_of_found()];
+  const RivalDistance apart{options_.numbers.rival_distance_m, options_.numbers.rival_angle_rad};
+  best.evidence = found;
+  best.standing = {margin_of(found_, found, apart), lead_of(found_, found, apart)};
+  best.reason = verify(best.evidence, best.standing, best.is_continuation, options_.numbers);
   timer_.finish(Stage::kVerify);
   return best;
+}
+
+std::size_t Localizer::best_of_found() const {
+  const auto best = std::max_element(found_.begin(), found_.end(), [](const Hypothesis& a, const Hypothesis& b) {
+    return a.is_found != b.is_found ? b.is_found : a.num_inliers < b.num_inliers;
+  });
+  return static_cast<std::size_t>(best - found_.begin());
+}
+
+void Localizer::ask_rivals(Hypothesis* best, std::uint64_t seed) {
+  if (!best->is_found || best->num_inliers < options_.numbers.min_inliers) return;
+  for (const Rigid3& T_map_camera : rivals_.of(best->T_map_camera)) {
+    best->is_look_alike = true;
+    const auto asked = std::find_if(found_.begin(), found_.end(), [&](const Hypothesis& found) {
+      return found.is_found && !are_rivals(found.T_map_camera, T_map_camera, kSamePlace);
+    });
+    if (asked != found_.end()) asked->is_look_alike = true;
+    if (asked != found_.end() || found_.size() == found_.capacity()) continue;
+    const auto matches = solver_.search_by_projection(&landmarks_, T_map_camera, static_cast<float>(options_.numbers.rival_radius_px));
+    const std::size_t before = found_.size();
+    keep(solver_.solve_and_refine(&landmarks_, matches, seed));
+    if (found_.size() > before) found_.back().is_look_alike = true;
+  }
 }
 
 void Localizer::solve(const Proposal& proposal, std::uint64_t seed) {
@@ -174,7 +216,9 @@ void Localizer::gather_candidates(const Proposal& place) {
 }
 
 void Localizer::keep(const PoseEvidence& found) {
-  if (found.is_found || found_.empty()) found_.push_back(found);
+  if (!found.is_found && !found_.empty()) return;
+  found_.push_back({found, {}, {}, false});
+  if (found.is_found) solver_.explained_features(landmarks_, &found_.back().explained, &found_.back().distinct);
 }
 
 // Matches with another place ask for any focal length: only what could be a pose has a say.
@@ -188,7 +232,7 @@ const Localization& Localizer::accept(const Frame& frame, const Candidate& candi
   result_.has_pose = true;
   result_.T_map_camera = candidate.evidence.T_map_camera;
   result_.covariance = with_map_uncertainty(candidate.evidence.covariance);
-  result_.quality = quality_of(candidate.evidence, candidate.margin);
+  result_.quality = quality_of(candidate.evidence, candidate.standing.margin);
   if (!candidate.is_continuation) ++result_.reset_counter;
   result_.jump_m = gate_.accept(frame.stamp_ns, candidate);
   return report(candidate);
@@ -216,7 +260,7 @@ const Localization& Localizer::report(const Candidate& candidate) {
   result_.reason = candidate.reason;
   result_.is_tracked = candidate.is_continuation;
   result_.evidence = candidate.evidence;
-  result_.margin = candidate.margin;
+  result_.standing = candidate.standing;
   timer_.finish(Stage::kVerify);
   result_.stage_ns = timer_.stop();
   return result_;

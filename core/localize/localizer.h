@@ -20,6 +20,7 @@
 #include "core/localize/localizer_numbers.h"
 #include "core/localize/pose_hint.h"
 #include "core/localize/proposer.h"
+#include "core/localize/rival_poses.h"
 #include "core/map/map_landmarks.h"
 #include "core/map/map_view.h"
 #include "core/registration/pose_solver.h"
@@ -58,6 +59,8 @@ class Localizer {
   void solve(const Proposal& proposal, std::uint64_t seed);
   void gather_candidates(const Proposal& place);
   void keep(const PoseEvidence& found);
+  void ask_rivals(Hypothesis* best, std::uint64_t seed);
+  [[nodiscard]] std::size_t best_of_found() const;
   void watch_calibration(const PoseEvidence& evidence);
   const Localization& accept(const Frame& frame, const Candidate& candidate);
   const Localization& decline(const Frame& frame, const Candidate& candidate);
@@ -70,10 +73,11 @@ class Localizer {
   StageTimer timer_;
   FrameExtractor extractor_;
   FrameFeatures view_;  ///< of the frame at hand
+  RivalPoses rivals_;
   MapLandmarks landmarks_;
   PoseSolver solver_;
   std::vector<std::unique_ptr<Proposer>> proposers_;
-  std::vector<PoseEvidence> found_;               ///< for the proposals at hand
+  std::vector<Hypothesis> found_;                 ///< for the proposals at hand
   std::vector<std::uint32_t> list_;               ///< landmarks of one keyframe
   std::vector<std::uint32_t> visit_of_landmark_;  ///< the visit_ at which a landmark became a candidate
   std::uint32_t visit_ = 0;

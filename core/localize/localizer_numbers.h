@@ -30,16 +30,20 @@ struct LocalizerNumbers {
   std::uint32_t thin_inliers = 80;
   double rival_distance_m = 0.25;
   double rival_angle_rad = 0.2;
+  int max_rivals = 10;
+  double rival_radius_px = 30.0;
   // Verification.
   std::uint32_t min_features = 40;
   std::uint32_t min_inliers = 20;
   std::uint32_t min_inliers_no_depth = 40;
+  double inliers_per_doubling = 8.0;
   std::uint32_t min_tracked_inliers = 15;
   std::uint32_t min_coarse_inliers = 15;
   std::uint32_t strong_inliers = 60;
   double min_inlier_ratio = 0.4;
   double min_spread = 0.1;
   double min_margin = 0.4;
+  double min_lead = 6.0;
   std::uint32_t min_depth_samples = 12;
   double min_depth_agreement = 0.4;
   double min_depth_agreement_thin = 0.6;

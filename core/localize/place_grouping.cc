@@ -19,7 +19,7 @@ void PlaceGrouping::add(std::uint32_t keyframe) {
   };
   auto place = std::find_if(places_.begin(), places_.end(), is_near);
   if (place == places_.end()) {
-    if (places_.size() == places_.capacity()) return;
+    if (static_cast<int>(places_.size()) >= numbers_->max_places) return;
     place = places_.insert(places_.end(), Proposal{});
   }
   if (place->num_keyframes < std::min(numbers_->max_keyframes_per_place, Proposal::kMaxKeyframes))

@@ -19,7 +19,7 @@ bool contradicts_depth(const PoseEvidence& evidence, const LocalizerNumbers& num
 
 }  // namespace
 
-Reason verify(const PoseEvidence& evidence, double margin, bool is_tracked, const LocalizerNumbers& numbers) {
+Reason verify(const PoseEvidence& evidence, const Standing& standing, bool is_tracked, const LocalizerNumbers& numbers) {
   const bool has_map_depth = evidence.num_map_depth >= numbers.min_map_depth_samples;
   const std::uint32_t min_inliers = is_tracked      ? numbers.min_tracked_inliers
                                     : has_map_depth ? numbers.min_inliers
@@ -31,7 +31,7 @@ Reason verify(const PoseEvidence& evidence, double margin, bool is_tracked, cons
   if (evidence.num_inliers < min_inliers) return Reason::kFewInliers;
   if (evidence.inlier_ratio() < numbers.min_inlier_ratio) return Reason::kLowInlierRatio;
   if (evidence.spread < numbers.min_spread) return Reason::kPoorSpread;
-  if (margin < numbers.min_margin) return Reason::kAmbiguous;
+  if (standing.margin < numbers.min_margin || standing.lead < numbers.min_lead) return Reason::kAmbiguous;
   if (contradicts_depth(evidence, numbers)) return Reason::kDepthInconsistent;
   const Vector6d variance = evidence.covariance.diagonal();
   if (!(variance.head<3>().maxCoeff() < numbers.max_position_sigma_m * numbers.max_position_sigma_m)) return Reason::kUncertain;

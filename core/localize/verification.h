@@ -7,11 +7,12 @@
 
 #include "core/localize/localization.h"
 #include "core/localize/localizer_numbers.h"
+#include "core/registration/rivals.h"
 
 namespace camloc {
 
-/// `margin` is 1 for a tracked pose. kNone means verified.
-[[nodiscard]] Reason verify(const PoseEvidence& evidence, double margin, bool is_tracked, const LocalizerNumbers& numbers);
+/// kNone means verified.
+[[nodiscard]] Reason verify(const PoseEvidence& evidence, const Standing& standing, bool is_tracked, const LocalizerNumbers& numbers);
 
 /// Does the focal length that the matches ask for contradict the assumed one?
 [[nodiscard]] bool is_calibration_mismatch(const PoseEvidence& evidence, const LocalizerNumbers& numbers);

@@ -53,6 +53,9 @@
 //   inverted_keyframes  u16, num_entries; keyframes that contain the word, ascending within a word
 //   inverted_weights    u8, num_entries; tf-idf of the word in that keyframe, 1..255 relative to the keyframe's norm
 //   wcs                 WcsRecord, 0 or 1
+//   RIVL (optional)     RivalRecord; by keyframe, of one keyframe the most alike first
+//   TWIN (optional)     u8, num_landmarks: keyframes of other places that show something just like it, saturating. RIVL and
+//                       TWIN come together or not at all; a map with neither was not asked whether places look alike
 #pragma once
 
 #include <array>
@@ -105,6 +108,8 @@ inline constexpr std::uint32_t kMaxSections = 64;
   for (int i = 0; i < 4; ++i) id |= static_cast<std::uint32_t>(static_cast<unsigned char>(characters[i])) << (8 * i);
   return SectionId{id};
 }
+
+inline constexpr SectionId kRivals = section_id("RIVL"), kTwins = section_id("TWIN");
 
 inline constexpr std::uint16_t kSectionIsOptional = 1;  ///< flag: a reader that does not know the section skips it
 
@@ -189,6 +194,15 @@ struct KeyframeRecord {
   std::uint32_t num_landmark_entries;
 };
 static_assert(sizeof(KeyframeRecord) == 36);
+
+/// What a keyframe shows is at another place of the map, too: a camera there, at this pose relative to the rival keyframe, would see
+/// nearly the same.
+struct RivalRecord {
+  std::uint16_t keyframe, rival;         ///< indices of keyframes, not equal
+  std::array<std::int16_t, 3> position;  ///< of the camera in the axes of the rival keyframe, 1/2048 m
+  std::array<std::int16_t, 3> rotation;  ///< rotation vector from the rival keyframe's axes, pi / 32767
+};
+static_assert(sizeof(RivalRecord) == 16);
 
 /// Where the map lies in the world.
 struct WcsRecord {

@@ -14,8 +14,9 @@ constexpr int kOversampling = 4;
 
 }  // namespace
 
-MapLandmarks::MapLandmarks(const MapView& map, const Intrinsics& color, const MapLandmarksOptions& options)
+MapLandmarks::MapLandmarks(const MapView& map, const Intrinsics& color, const MapLandmarksOptions& options, const LookAlikes* look_alikes)
     : map_(&map),
+      look_alikes_(look_alikes),
       options_(options),
       projector_(color, PyramidLevels(map.info().orb_scale_factor, static_cast<int>(map.info().orb_num_levels)), options.limits) {
   log_reference_.resize(256);

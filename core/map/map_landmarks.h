@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/map/look_alikes.h"
 #include "core/map/map_view.h"
 #include "core/registration/landmark_source.h"
 #include "core/registration/projection.h"
@@ -21,14 +22,17 @@ struct MapLandmarksOptions {
   ProjectionLimits limits;
 };
 
-/// Not thread-safe; allocates at construction only. `map` must outlive it.
+/// Not thread-safe; allocates at construction only. `map` and `look_alikes`, where given, must outlive it.
 class MapLandmarks final : public LandmarkSource {
  public:
-  MapLandmarks(const MapView& map, const Intrinsics& color, const MapLandmarksOptions& options);
+  MapLandmarks(const MapView& map, const Intrinsics& color, const MapLandmarksOptions& options, const LookAlikes* look_alikes = nullptr);
   [[nodiscard]] std::span<const ProjectedLandmark> project(const Rigid3& T_map_camera, float radius_px) override;
   [[nodiscard]] std::span<const Descriptor> descriptors() const override { return map_->descriptors(); }
   [[nodiscard]] Eigen::Vector3f position_m(std::int32_t landmark) const override {
     return map_->position_m(static_cast<std::uint32_t>(landmark));
+  }
+  [[nodiscard]] bool is_repeated(std::int32_t landmark) const override {
+    return look_alikes_ != nullptr && look_alikes_->is_repeated(static_cast<std::uint32_t>(landmark));
   }
 
  private:
@@ -37,6 +41,7 @@ class MapLandmarks final : public LandmarkSource {
   void keep_most_observed();
 
   const MapView* map_;
+  const LookAlikes* look_alikes_;
   MapLandmarksOptions options_;
   LandmarkProjector projector_;
   std::vector<float> log_reference_;  ///< per 8-bit code

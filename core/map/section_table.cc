@@ -4,6 +4,7 @@
 // The sections that this camloc knows, and what makes the content of each safe to use. A further section has its own file
 // with its record, its id, its check, and how its bytes are made and read; here it has one line at the end of the table.
 #include <cmath>
+#include <cstring>
 #include <string>
 
 #include "core/map/landmark_codes.h"
@@ -121,6 +122,21 @@ Status check_wcs(const MapSections& map) {
   return Status::ok();
 }
 
+/// Also where only one of the two sections is there.
+Status check_look_alikes(const MapSections& map) {
+  if (map.section(map_format::kTwins).size() != map.landmarks.size()) return corrupt("look-alikes do not belong to these landmarks");
+  const std::span<const std::byte> bytes = map.section(map_format::kRivals);
+  std::uint32_t last_keyframe = 0;
+  for (std::size_t at = 0; at < bytes.size(); at += sizeof(map_format::RivalRecord)) {
+    map_format::RivalRecord record;
+    std::memcpy(&record, bytes.data() + at, sizeof record);
+    const bool is_in_range = record.keyframe < map.keyframes.size() && record.rival < map.keyframes.size();
+    if (!is_in_range || record.keyframe == record.rival || record.keyframe < last_keyframe) return corrupt("an impossible look-alike");
+    last_keyframe = record.keyframe;
+  }
+  return Status::ok();
+}
+
 using map_format::SectionId;
 
 // Content that only makes sense together is checked with the first of its sections.
@@ -137,6 +153,8 @@ constexpr SectionKind kSections[] = {
     {SectionId::kInvertedWeights, "inverted_weights", 1, nullptr},
     {SectionId::kWcs, "wcs", sizeof(map_format::WcsRecord), check_wcs},
     // ---- further sections
+    {map_format::kRivals, "rivals", sizeof(map_format::RivalRecord), check_look_alikes},
+    {map_format::kTwins, "twins", 1, check_look_alikes},
 };
 
 }  // namespace

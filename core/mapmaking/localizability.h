@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/map/map_view.h"
+#include "core/mapmaking/rival_search.h"
 
 namespace camloc {
 
@@ -35,25 +36,11 @@ struct LocalizabilityOptions {
   double min_spread = 0.25;            ///< of the image's cells that hold one
   double max_position_sigma_m = 0.05;  ///< expected, largest axis
 
-  double rival_distance_m = 3.0;   ///< another place is at least this far away
-  double rival_turn_rad = 1.047;   ///< or turned by this, and
-  double max_common_share = 0.05;  ///< shares at most this part of the landmarks
-  double same_point_m = 1.0;       ///< landmarks closer than this are the same thing mapped twice, no look-alike
-  int max_rivals = 5;              ///< most similar other places that are compared
-  int max_match_distance = 48;     ///< of 256 bits, mutually nearest
+  RivalSearchOptions rivals{};
   /// From here on a place looks alike: that many matches agree on one pose there (by chance up to 6), or this share of the
   /// descriptors matches (rooms of one building have up to 0.08 by chance, bays of one corridor 0.1 to 0.45).
   std::uint32_t min_rival_inliers = 40;
   double min_rival_share = 0.25;
-  double max_error_px = 5.0;  ///< of that pose
-};
-
-/// The most deceiving other place.
-struct RivalPlace {
-  std::uint32_t keyframe = 0;
-  double matched_share = 0;  ///< of the descriptors that match mutually
-  std::uint32_t num_matches = 0;
-  std::uint32_t num_inliers = 0;  ///< matches that agree on one pose of this view at that place
 };
 
 struct KeyframeLocalizability {

@@ -26,11 +26,9 @@ PoseSolverOptions solver_options(const PoseConsistencyOptions& options) {
 }
 
 /// The points that a view measured, in its own camera: what another view is registered to.
-class ViewPoints final : public LandmarkSource {
+class ViewPoints final : public LandmarkPositions {
  public:
   explicit ViewPoints(const FrameFeatures& view) : view_(&view) {}
-  [[nodiscard]] std::span<const ProjectedLandmark> project(const Rigid3&, float) override { return {}; }
-  [[nodiscard]] std::span<const Descriptor> descriptors() const override { return view_->features.descriptors; }
   [[nodiscard]] Eigen::Vector3f position_m(std::int32_t i) const override {
     return view_->point_camera(static_cast<std::size_t>(i)).cast<float>();
   }

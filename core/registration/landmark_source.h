@@ -14,16 +14,23 @@
 
 namespace camloc {
 
-class LandmarkSource {
+/// Where landmarks are: enough for a pose from matches that are known already.
+class LandmarkPositions {
  public:
-  virtual ~LandmarkSource() = default;
+  virtual ~LandmarkPositions() = default;
+  /// In `map`, metres.
+  [[nodiscard]] virtual Eigen::Vector3f position_m(std::int32_t landmark) const = 0;
+};
+
+class LandmarkSource : public LandmarkPositions {
+ public:
   /// Those that a camera there should see, with windows of this radius. ProjectedLandmark::landmark counts in this source; valid until
   /// the next call.
   [[nodiscard]] virtual std::span<const ProjectedLandmark> project(const Rigid3& T_map_camera, float radius_px) = 0;
   /// What ProjectedLandmark::first_descriptor counts in.
   [[nodiscard]] virtual std::span<const Descriptor> descriptors() const = 0;
-  /// In `map`, metres.
-  [[nodiscard]] virtual Eigen::Vector3f position_m(std::int32_t landmark) const = 0;
+  /// Something just like it is known to be elsewhere: it may refine a pose, but says little about the place.
+  [[nodiscard]] virtual bool is_repeated(std::int32_t) const { return false; }
 };
 
 }  // namespace camloc

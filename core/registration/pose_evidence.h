@@ -17,7 +17,8 @@ struct PoseEvidence {
   std::uint32_t num_visible = 0;           ///< landmarks that should be in the image, as far as they were projected
   std::uint32_t num_matches = 0;           ///< of those, found in their window; before guided refinement all that were given
   std::uint32_t num_inliers = 0;
-  double spread = 0;  ///< share of the image's 8 x 6 cells that hold an inlier
+  std::uint32_t num_distinct_visible = 0, num_distinct_inliers = 0;  ///< the same without landmarks that have twins elsewhere
+  double spread = 0;                                                 ///< share of the image's 8 x 6 cells that hold an inlier
   std::uint32_t num_with_depth = 0;
   double depth_agreement = 1;       ///< share of inliers with depth whose depth agrees
   std::uint32_t num_map_depth = 0;  ///< landmarks in view whose pixel has a measured depth and that nothing hides

@@ -77,7 +77,7 @@ std::span<const Match> PoseSolver::match_candidates() {
   return matches;
 }
 
-PoseEvidence PoseSolver::solve(const LandmarkSource& landmarks, std::span<const Match> matches, std::uint64_t seed,
+PoseEvidence PoseSolver::solve(const LandmarkPositions& landmarks, std::span<const Match> matches, std::uint64_t seed,
                                const Rigid3* T_map_explained) {
   PoseEvidence evidence;
   evidence.num_matches = static_cast<std::uint32_t>(matches.size());
@@ -104,6 +104,7 @@ PoseEvidence PoseSolver::refine(LandmarkSource* landmarks, const Rigid3& T_map_c
   if (refined.is_converged && refined.num_inliers >= options_.min_inliers) {
     summarize(refined, &evidence);
     if (options_.gathers_evidence) {
+      count_distinct(*landmarks, &evidence);
       measure_focal_scale(&evidence);
       measure_map_depth(*landmarks, visible_, &evidence);
     }
@@ -118,6 +119,17 @@ PoseEvidence PoseSolver::solve_and_refine(LandmarkSource* landmarks, std::span<c
   return found.is_found ? refine(landmarks, found.T_map_camera) : found;
 }
 
+void PoseSolver::explained_features(const LandmarkSource& landmarks, FeatureSet* all, FeatureSet* distinct) const {
+  all->clear();
+  distinct->clear();
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    if (inlier_mask_[i] == 0) continue;
+    const auto feature = static_cast<std::size_t>(pairs_.feature[i]);
+    all->add(feature);
+    if (!landmarks.is_repeated(pairs_.landmark[i])) distinct->add(feature);
+  }
+}
+
 void PoseSolver::append_inliers(std::vector<LandmarkObservation>* inliers) const {
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     if (inlier_mask_[i] != 0)
@@ -125,7 +137,7 @@ void PoseSolver::append_inliers(std::vector<LandmarkObservation>* inliers) const
   }
 }
 
-void PoseSolver::fill_pairs(const LandmarkSource& landmarks, std::span<const Match> matches, const Rigid3* T_map_explained,
+void PoseSolver::fill_pairs(const LandmarkPositions& landmarks, std::span<const Match> matches, const Rigid3* T_map_explained,
                             std::size_t limit) {
   pairs_.clear();
   for (const Match& match : matches) {
@@ -180,6 +192,13 @@ double PoseSolver::inliers_per_patch() {
   return num_patches == 0 ? 1.0 : static_cast<double>(num_inliers) / num_patches;
 }
 
+void PoseSolver::count_distinct(const LandmarkSource& landmarks, PoseEvidence* evidence) const {
+  evidence->num_distinct_visible = evidence->num_distinct_inliers = 0;
+  for (const ProjectedLandmark& landmark : visible_) evidence->num_distinct_visible += landmarks.is_repeated(landmark.landmark) ? 0 : 1;
+  for (std::size_t i = 0; i < pairs_.size(); ++i)
+    evidence->num_distinct_inliers += inlier_mask_[i] != 0 && !landmarks.is_repeated(pairs_.landmark[i]) ? 1 : 0;
+}
+
 void PoseSolver::measure_focal_scale(PoseEvidence* evidence) {
   PoseRefinementOptions options = refinement_;
   options.estimate_focal_scale = true;
@@ -196,7 +215,7 @@ void PoseSolver::measure_focal_scale(PoseEvidence* evidence) {
 
 // Landmarks in front of the measured surface by more than its noise are where the camera sees through: at a wrong pose
 // most are. Landmarks behind it are hidden and say nothing: people and moved things do that, too.
-void PoseSolver::measure_map_depth(const LandmarkSource& landmarks, std::span<const ProjectedLandmark> visible,
+void PoseSolver::measure_map_depth(const LandmarkPositions& landmarks, std::span<const ProjectedLandmark> visible,
                                    PoseEvidence* evidence) const {
   const Rigid3 T_camera_map = evidence->T_map_camera.inverse();
   const std::size_t step = std::max<std::size_t>(1, visible.size() / kMapDepthSamples);

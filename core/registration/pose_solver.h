@@ -20,6 +20,7 @@
 #include "core/geometry/correspondences.h"
 #include "core/geometry/pnp_ransac.h"
 #include "core/geometry/pose_refinement.h"
+#include "core/registration/feature_set.h"
 #include "core/registration/frame_features.h"
 #include "core/registration/image_cells.h"
 #include "core/registration/keypoint_noise.h"
@@ -69,7 +70,7 @@ class PoseSolver {
 
   /// Pose from matches with outliers; no guided refinement yet. `seed` makes the sampling reproducible. Matches that fit
   /// `T_map_explained`, where given, are left out: what other pose do the remaining ones ask for?
-  [[nodiscard]] PoseEvidence solve(const LandmarkSource& landmarks, std::span<const Match> matches, std::uint64_t seed,
+  [[nodiscard]] PoseEvidence solve(const LandmarkPositions& landmarks, std::span<const Match> matches, std::uint64_t seed,
                                    const Rigid3* T_map_explained = nullptr);
   [[nodiscard]] PoseEvidence refine(LandmarkSource* landmarks, const Rigid3& T_map_camera);
   /// solve(), and refine() what it found.
@@ -77,14 +78,17 @@ class PoseSolver {
                                               const Rigid3* T_map_explained = nullptr);
   /// Of the last solve() or refine() that found a pose; one per inlier, in the order of the matches' rank. Appends.
   void append_inliers(std::vector<LandmarkObservation>* inliers) const;
+  /// The features of those, and of those whose landmarks are not repeated.
+  void explained_features(const LandmarkSource& landmarks, FeatureSet* all, FeatureSet* distinct) const;
 
  private:
-  void fill_pairs(const LandmarkSource& landmarks, std::span<const Match> matches, const Rigid3* T_map_explained, std::size_t limit);
+  void fill_pairs(const LandmarkPositions& landmarks, std::span<const Match> matches, const Rigid3* T_map_explained, std::size_t limit);
   [[nodiscard]] bool is_explained(const Eigen::Vector3f& p_map, std::size_t feature, const Rigid3& T_map_camera) const;
   void summarize(const PoseRefinementResult& refined, PoseEvidence* evidence);
   [[nodiscard]] double inliers_per_patch();
+  void count_distinct(const LandmarkSource& landmarks, PoseEvidence* evidence) const;
   void measure_focal_scale(PoseEvidence* evidence);
-  void measure_map_depth(const LandmarkSource& landmarks, std::span<const ProjectedLandmark> visible, PoseEvidence* evidence) const;
+  void measure_map_depth(const LandmarkPositions& landmarks, std::span<const ProjectedLandmark> visible, PoseEvidence* evidence) const;
   [[nodiscard]] const Keypoint& keypoint_of_pair(std::size_t i) const {
     return view_->features.keypoints[static_cast<std::size_t>(pairs_.feature[i])];
   }

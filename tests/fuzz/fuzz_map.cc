@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/base/unique_fd.h"
+#include "core/map/look_alikes.h"
 #include "core/map/map_sections.h"
 #include "core/map/map_view.h"
 #include "core/map/retrieval.h"
@@ -42,6 +43,14 @@ void use(const MapView& view) {
     const std::size_t count = view.keyframe_landmarks(k, list);
     for (std::size_t i = 0; i < count; ++i) require(list[i] < info.num_landmarks && (i == 0 || list[i] > list[i - 1]));
   }
+  const LookAlikes look_alikes(view);
+  for (std::uint32_t k = 0; k < info.num_keyframes; ++k) {
+    for (std::size_t i = 0; i < look_alikes.num_rivals(k); ++i) {
+      const RivalPose rival = look_alikes.rival(k, i);
+      require(rival.keyframe < info.num_keyframes && rival.keyframe != k && rival.T_map_camera.translation.allFinite());
+    }
+  }
+  for (std::uint32_t i = 0; i <= info.num_landmarks; ++i) sum += look_alikes.is_repeated(i) ? 1 : 0;
   Retriever retriever(view, 64);
   for (const auto& found : retriever.retrieve(view.words(), 5)) require(found.keyframe < info.num_keyframes);
   require(view.sections().size() >= map_format::kNumCoreSections && view.sections().size() <= map_format::kMaxSections);

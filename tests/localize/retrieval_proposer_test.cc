@@ -62,7 +62,7 @@ TEST(RetrievalProposer, FindsThePlace) {
     const auto [result, error] = search(SampleWorld::get().map(), i);
     ASSERT_TRUE(result.evidence.is_found) << i;
     EXPECT_GT(result.evidence.num_inliers, 300U) << i;
-    EXPECT_GT(result.margin, 0.8) << i;
+    EXPECT_GT(result.standing.margin, 0.8) << i;
     EXPECT_LT(error, 0.006) << i;
   }
 }
@@ -77,7 +77,7 @@ TEST(RetrievalProposer, MarginFallsWithALookAlike) {
       const auto [result, error] = search(*map.view, i);
       ASSERT_TRUE(result.evidence.is_found);
       if (percent < 100) { EXPECT_LT(error, 0.01) << "the place with more of its landmarks wins"; }
-      worst_margin = std::min(worst_margin, result.margin);
+      worst_margin = std::min(worst_margin, result.standing.margin);
     }
     EXPECT_LT(worst_margin, last_margin - 0.1) << percent;
     last_margin = worst_margin;

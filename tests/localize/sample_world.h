@@ -106,16 +106,16 @@ inline std::vector<std::uint64_t> bits_of(const Localization& r) {
   for (const double value : r.T_map_camera.rotation.coeffs()) add(value);
   for (const double value : r.T_map_camera.translation) add(value);
   for (const double value : r.covariance.reshaped()) add(value);
-  for (const double value : {r.evidence.inlier_ratio(), r.evidence.spread, r.margin, r.evidence.focal_scale, r.evidence.depth_agreement,
-                             r.evidence.map_depth_agreement, r.jump_m})
+  for (const double value : {r.evidence.inlier_ratio(), r.evidence.spread, r.standing.margin, r.evidence.focal_scale,
+                             r.evidence.depth_agreement, r.evidence.map_depth_agreement, r.jump_m})
     add(value);
   return bits;
 }
 
 inline bool is_finite(const Localization& r) {
   bool is_ok = r.T_map_camera.rotation.coeffs().allFinite() && r.T_map_camera.translation.allFinite() && r.covariance.allFinite();
-  for (const double value : {r.evidence.inlier_ratio(), r.evidence.spread, r.margin, r.evidence.focal_scale, r.evidence.depth_agreement,
-                             r.evidence.map_depth_agreement, r.jump_m}) {
+  for (const double value : {r.evidence.inlier_ratio(), r.evidence.spread, r.standing.margin, r.evidence.focal_scale,
+                             r.evidence.depth_agreement, r.evidence.map_depth_agreement, r.jump_m}) {
     is_ok = is_ok && std::isfinite(value);
   }
   return is_ok;

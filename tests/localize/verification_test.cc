@@ -33,14 +33,14 @@ PoseEvidence good() {
 
 struct Figures {
   PoseEvidence evidence = good();
-  double margin = 0.8;
+  double margin = 0.8, lead = 20;
   bool is_tracked = false;
 };
 
 Reason verdict(const std::function<void(Figures*)>& change) {
   Figures figures;
   change(&figures);
-  return verify(figures.evidence, figures.margin, figures.is_tracked, LocalizerNumbers{});
+  return verify(figures.evidence, Standing{figures.margin, figures.lead}, figures.is_tracked, LocalizerNumbers{});
 }
 
 TEST(Verification, GoodEvidenceIsVerified) {
@@ -88,6 +88,8 @@ TEST(Verification, EveryFigureHasItsReason) {
       {Reason::kPoorSpread, [](Figures* f) { f->evidence.spread = 5.0 / 48; }, [](Figures* f) { f->evidence.spread = 4.0 / 48; }},
       {Reason::kAmbiguous, [](Figures* f) { f->margin = LocalizerNumbers{}.min_margin + 0.01; },
        [](Figures* f) { f->margin = LocalizerNumbers{}.min_margin - 0.01; }},
+      {Reason::kAmbiguous, [](Figures* f) { f->lead = LocalizerNumbers{}.min_lead + 0.01; },
+       [](Figures* f) { f->lead = LocalizerNumbers{}.min_lead - 0.01; }},
       {Reason::kDepthInconsistent, [](Figures* f) { f->evidence.depth_agreement = LocalizerNumbers{}.min_depth_agreement + 0.01; },
        [](Figures* f) { f->evidence.depth_agreement = LocalizerNumbers{}.min_depth_agreement - 0.01; }},
       {Reason::kDepthInconsistent, [](Figures* f) { f->evidence.map_depth_agreement = LocalizerNumbers{}.min_map_depth_agreement + 0.01; },
@@ -149,7 +151,7 @@ TEST(Verification, AnUnmeasuredFocalLengthIsNoMismatch) {
   EXPECT_FALSE(is_calibration_mismatch(h, LocalizerNumbers{}));
 }
 
-TEST(Verification, NoEvidenceFails) { EXPECT_EQ(verify(PoseEvidence{}, 1, true, LocalizerNumbers{}), Reason::kFewMatches); }
+TEST(Verification, NoEvidenceFails) { EXPECT_EQ(verify(PoseEvidence{}, {}, true, LocalizerNumbers{}), Reason::kFewMatches); }
 
 TEST(Quality, GrowsWithEveryFigureAndStaysInRange) {
   const int base = quality_of(good(), 0.8);

@@ -14,67 +14,30 @@
 #include "core/map/map_view.h"
 #include "core/map/map_writer.h"
 #include "core/registration/keypoint_noise.h"
-#include "tests/map/room_map.h"
+#include "tests/mapmaking/bay_map.h"
 
 namespace camloc {
 namespace {
 
+using testing::add_wall;
+using testing::empty_map;
 using testing::landmarks_in_view;
 using testing::looking;
+using testing::make_corridor;
 using testing::make_room_map;
+using testing::one_view_a_bay;
 using testing::Random;
 using testing::room_landmark;
 
 /// What a map says when all keyframes are made from `poses` and see what is in view.
 std::vector<KeyframeLocalizability> assess(MapData map, const std::vector<Rigid3>& poses, const LocalizabilityOptions& options = {}) {
-  map.keyframes.clear();
-  for (const Rigid3& pose : poses) map.keyframes.push_back({pose, landmarks_in_view(map, pose)});
-  std::vector<Descriptor> descriptors;
-  for (const MapLandmark& landmark : map.landmarks) descriptors.push_back(landmark.descriptors[0]);
-  map.words = train_vocabulary(descriptors, 64);
-  build_inverted_file(&map);
+  testing::set_keyframes(&map, poses);
   const testing::TemporaryFolder folder;
   const Status written = write_map(map, folder.file("m.cmap"));
   EXPECT_TRUE(written.is_ok()) << written.message();
   const auto view = MapView::open(folder.file("m.cmap"));
   EXPECT_TRUE(view.is_ok());
   return assess_localizability(*view, options);
-}
-
-/// Landmarks on the wall y = 2 between two x, in heights 0 to 2.5 m.
-void add_wall(MapData* map, double from_x, double to_x, int count, Random* random) {
-  for (int i = 0; i < count; ++i) {
-    const Eigen::Vector3d p(random->uniform(from_x, to_x), 2, random->uniform(0, 2.5));
-    map->landmarks.push_back(room_landmark(p, Eigen::Vector3d(p.x(), 0, 1.25) - p, random));
-  }
-}
-
-MapData empty_map() {
-  MapData map;
-  map.camera = testing::room_camera();
-  return map;
-}
-
-/// `num_bays` pieces of 4 m whose landmarks have the same places and, but for some bits, the same descriptors.
-MapData make_corridor(int num_bays, int bits) {
-  MapData bay = empty_map();
-  Random random(11);
-  add_wall(&bay, 0, 4, 300, &random);
-  MapData map = empty_map();
-  for (int i = 0; i < num_bays; ++i) {
-    for (MapLandmark landmark : bay.landmarks) {
-      landmark.position_m.x() += 4.0F * static_cast<float>(i);
-      landmark.descriptors[0] = random.noisy(landmark.descriptors[0], bits);
-      map.landmarks.push_back(landmark);
-    }
-  }
-  return map;
-}
-
-std::vector<Rigid3> one_view_a_bay(int num_bays) {
-  std::vector<Rigid3> poses;
-  for (int i = 0; i < num_bays; ++i) poses.push_back(looking({4.0 * i + 2, -0.5, 1.4}, {0.05, 1, -0.05}));
-  return poses;
 }
 
 TEST(LocalizabilityTest, InARichRoomAFixIsLikely) {

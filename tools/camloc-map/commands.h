@@ -17,6 +17,7 @@ void add_export_command(CLI::App& app, int& exit_code);
 void add_view_command(CLI::App& app, int& exit_code);
 void add_georef_command(CLI::App& app, int& exit_code);
 void add_merge_command(CLI::App& app, int& exit_code);
+void add_upgrade_command(CLI::App& app, int& exit_code);
 
 /// Prints "camloc-map: <message>" on stderr; the exit code that belongs to the error.
 inline int report(const Status& status) { return tools::report("camloc-map", status); }

@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   camloc::mapping::add_view_command(app, exit_code);
   camloc::mapping::add_georef_command(app, exit_code);
   camloc::mapping::add_merge_command(app, exit_code);
+  camloc::mapping::add_upgrade_command(app, exit_code);
   bool is_over = false;
   const int usage = camloc::tools::parse_command_line(app, argc, argv, &is_over);
   return is_over ? usage : exit_code;

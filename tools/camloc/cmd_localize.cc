@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // `camloc localize`: every frame of a recording against a map; a trajectory and, on request, everything known per frame.
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <memory>
@@ -52,7 +53,10 @@ Json record_json(const Localization& result) {
           {"inliers", result.evidence.num_inliers},
           {"inlier_ratio", result.evidence.inlier_ratio()},
           {"spread", result.evidence.spread},
-          {"margin", result.margin},
+          {"distinct_visible", result.evidence.num_distinct_visible},
+          {"distinct_inliers", result.evidence.num_distinct_inliers},
+          {"margin", result.standing.margin},
+          {"lead", std::isfinite(result.standing.lead) ? Json(result.standing.lead) : Json(nullptr)},
           {"depth_agreement", result.evidence.depth_agreement},
           {"map_depth_agreement", result.evidence.map_depth_agreement},
           {"focal_scale", result.evidence.focal_scale},

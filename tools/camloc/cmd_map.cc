@@ -119,6 +119,11 @@ void print_table(const MapView& map, double open_ms) {
   } else {
     std::printf("mapping      how good the poses of the mapping are is not known: too few views of the same place\n");
   }
+  if (map.section(map_format::kTwins).empty())
+    std::printf("look-alikes  not known: camloc map upgrade %s\n", info.path.c_str());
+  else
+    std::printf("look-alikes  %zu places that another one could be taken for\n",
+                map.section(map_format::kRivals).size() / sizeof(map_format::RivalRecord));
   std::printf("camera       %s\n", info.camera.name.c_str());
   print_datum(map);
   print_skipped(map);

@@ -24,7 +24,7 @@ struct SplitCommand {
   std::vector<std::string> built_in, in_program;
 };
 const std::map<std::string, SplitCommand> kSplitCommands{
-    {"map", {{"info", "verify"}, {"build", "eval", "export", "georef", "merge", "view"}}},
+    {"map", {{"info", "verify"}, {"build", "eval", "export", "georef", "merge", "upgrade", "view"}}},
     {"camera", {{"list", "show", "import"}, {"calibrate"}}},
 };
 const char* const kProgramsHelp =
@@ -32,6 +32,7 @@ const char* const kProgramsHelp =
     "  map build                   Build a map from a recorded walk\n"
     "  map view, map export        See a map; write it for other viewers\n"
     "  map georef, map merge       Put a map into site coordinates; join walks\n"
+    "  map upgrade                 Find the look-alikes of a map made without them\n"
     "  map eval                    Compare a map with a laser scan\n"
     "  sim                         Write a synthetic building with its walks\n"
     "camloc-calibration:\n"

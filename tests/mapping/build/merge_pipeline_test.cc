@@ -37,7 +37,8 @@ TEST_F(MergePipelineTest, WritesTheMapAndCountsWhatItDoes) {
   summary.map_b = "b.cmap";
   ASSERT_TRUE(merge_into(a_, second_, {}, folder_.file("m.cmap"), observer, &summary).is_ok());
   EXPECT_EQ(observer.count("looking for places in common, keyframe"), summary.report.registration.num_queries);
-  EXPECT_EQ(observer.steps.back().what, "choosing landmarks and keyframes, training words ...");
+  EXPECT_EQ(observer.count("choosing landmarks and keyframes, training words ..."), 1U);
+  EXPECT_EQ(observer.steps.back().what, "look-alikes, keyframe");
   const auto merged = MapView::open(folder_.file("m.cmap"));
   ASSERT_TRUE(merged.is_ok());
   EXPECT_EQ(merged->info().num_landmarks, summary.report.map.num_landmarks);

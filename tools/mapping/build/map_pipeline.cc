@@ -17,11 +17,24 @@
 #include "tools/common/frame_reading.h"
 #include "tools/common/trajectory_file.h"
 #include "tools/mapping/build/frame_log.h"
+#include "tools/mapping/build/map_upgrade.h"
 #include "tools/mapping/build/merge_pipeline.h"
 #include "tools/mapping/build/recording_tracking.h"
 
 namespace camloc::mapping {
 namespace {
+
+/// A build that was stopped is finished all the same, with what there is.
+class Finishing final : public WorkObserver {
+ public:
+  explicit Finishing(WorkObserver& watcher) : watcher_(watcher) {}
+  void show(const std::string& what, std::uint64_t done, std::uint64_t total, const std::string& note) override {
+    watcher_.show(what, done, total, note);
+  }
+
+ private:
+  WorkObserver& watcher_;
+};
 
 constexpr std::uint32_t kMinSegmentKeyframes = 4;  // a shorter stretch is no sub-map
 
@@ -65,6 +78,10 @@ Status finish_map(const BuildRequest& request, const std::string& name, const st
   const bool is_extension = !request.extend_path.empty() && path == request.map_path;
   const Status written = is_extension ? extend_map(request, map.value(), observer, summary) : write_map(map.value(), path);
   if (!written.is_ok()) return written;
+  if (!is_extension) {
+    Finishing finishing(observer);
+    if (Status status = upgrade_map(path, path, finishing); !status.is_ok()) return status;
+  }
   summary->map_path = path;
   return Status::ok();
 }

@@ -8,6 +8,7 @@
 #include "core/map/map_writer.h"
 #include "tools/common/json_text.h"
 #include "tools/common/text_format.h"
+#include "tools/mapping/build/map_upgrade.h"
 
 namespace camloc::mapping {
 using tools::append_text;
@@ -27,7 +28,13 @@ Status merge_into(const std::string& map_a, const MapData& b, const MapMergeOpti
   const auto merged = merge_maps(a.value(), b, options, observer, &summary->report);
   if (!merged.is_ok()) return merged.status().code() == ErrorCode::kUnavailable ? interrupted(map_path) : merged.status();
   if (a.value().is_damaged()) return {ErrorCode::kCorrupt, map_a + ": could not be read to its end; was it changed meanwhile?"};
-  if (const Status written = write_map(merged.value(), map_path); !written.is_ok()) return written;
+  // Beside the map, which stays what it was until the new one knows its look-alikes.
+  const std::string partial_path = map_path + ".partial";
+  Status written = write_map(merged.value(), partial_path);
+  if (written.is_ok()) written = upgrade_map(partial_path, map_path, observer);
+  std::error_code ignored;
+  std::filesystem::remove(partial_path, ignored);
+  if (!written.is_ok()) return observer.should_stop() ? interrupted(map_path) : written;
   summary->map_path = map_path;
   summary->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return Status::ok();
