@@ -90,11 +90,16 @@ std::vector<RivalPlace> RivalSearch::find(std::uint32_t keyframe) {
 RivalPlace RivalSearch::compare(const KeyframeView& here, std::uint32_t rival_keyframe, std::uint64_t seed) {
   const KeyframeView& there = views_[rival_keyframe];
   nearest_descriptors(here.view.features.descriptors, there.view.features.descriptors, forward_.data());
-  nearest_descriptors(there.view.features.descriptors, here.view.features.descriptors, backward_.data());
+  const auto is_near = [&](const NearestDescriptor& nearest) { return nearest.distance <= options_.max_match_distance; };
+  asked_back_.clear();
+  for (std::size_t i = 0; i < here.landmarks.size(); ++i)
+    if (is_near(forward_[i])) asked_back_.push_back(there.view.features.descriptors[forward_[i].index]);
+  nearest_descriptors(asked_back_, here.view.features.descriptors, backward_.data());
   matches_.clear();
+  auto back = backward_.begin();
   for (std::size_t i = 0; i < here.landmarks.size(); ++i) {
     const NearestDescriptor& nearest = forward_[i];
-    if (nearest.distance > options_.max_match_distance || backward_[nearest.index].index != i) continue;
+    if (!is_near(nearest) || (back++)->index != i) continue;
     const auto landmark = static_cast<std::int32_t>(there.landmarks[nearest.index]);
     const Eigen::Vector3f apart = positions_.position_m(static_cast<std::int32_t>(here.landmarks[i])) - positions_.position_m(landmark);
     if (apart.norm() < options_.same_point_m) continue;

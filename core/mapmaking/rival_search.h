@@ -65,6 +65,7 @@ class RivalSearch {
   int most_features_;
   Retriever retriever_;
   std::vector<NearestDescriptor> forward_, backward_;
+  std::vector<Descriptor> asked_back_;
   std::vector<Match> matches_;
   PoseSolver solver_;
 };
