@@ -121,12 +121,16 @@ namespace {
 class TwinFinder {
  public:
   explicit TwinFinder(const MapData& map) : map_(&map) {
-    for (std::uint32_t i = 0; i < map.landmarks.size(); ++i) cells_.push_back({cell_of(map.landmarks[i].position_m), i});
+    for (std::uint32_t i = 0; i < map.landmarks.size(); ++i) {
+      const Eigen::Vector3f& p_map = map.landmarks[i].position_m;
+      if (has_cell(p_map)) cells_.push_back({cell_of(p_map), i});
+    }
     std::sort(cells_.begin(), cells_.end());
   }
 
   /// Is there, within kTwinRadiusM of `p_map`, a landmark that looks like this one?
   [[nodiscard]] bool has_twin_at(const MapLandmark& landmark, const Eigen::Vector3f& p_map) const {
+    if (!has_cell(p_map)) return false;
     const Cell low = cell_of(p_map - Eigen::Vector3f::Constant(kTwinRadiusM)),
                high = cell_of(p_map + Eigen::Vector3f::Constant(kTwinRadiusM));
     for (int x = low[0]; x <= high[0]; ++x) {
@@ -146,6 +150,8 @@ class TwinFinder {
   static constexpr float kTwinRadiusM = 0.1F;
   static constexpr int kMaxTwinDistance = 64;  // of 256 bits
 
+  /// A file may say that a landmark is anywhere.
+  static bool has_cell(const Eigen::Vector3f& p) { return (p.array().abs() < 1e6F).all(); }
   static Cell cell_of(const Eigen::Vector3f& p) {
     const Eigen::Vector3f cell = (p / (2 * kTwinRadiusM)).array().floor();
     return {static_cast<int>(cell.x()), static_cast<int>(cell.y()), static_cast<int>(cell.z())};
