@@ -394,8 +394,8 @@ TEST(Openni2Broken, DISABLED_without_drivers) {
 
 /// Records `num_frames` of each stream with OpenNI2's recorder, which is tried again when it hangs on closing.
 bool record(const std::string& path, int num_frames, const std::string& environment, bool is_lossy) {
-  const std::string command = "CAMLOC_SYNTHETIC_MAX_FRAMES=" + std::to_string(num_frames) + " CAMLOC_SYNTHETIC_REAL_FPS=75 " +
-                              environment + " timeout -k 2 15 " + CAMLOC_OPENNI2_RECORDER + " " + path + (is_lossy ? " 1" : " 0");
+  const std::string command = "CAMLOC_SYNTHETIC_MAX_FRAMES=" + std::to_string(num_frames) + " CAMLOC_SYNTHETIC_REAL_FPS=75 " + environment +
+                              " timeout -k 2 15 " + CAMLOC_OPENNI2_RECORDER + " " + path + (is_lossy ? " 1" : " 0");
   for (int attempt = 0; attempt < 4; ++attempt) {
     const int status = std::system(command.c_str());
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return true;
