@@ -5,11 +5,12 @@
 // position of the centroid.
 #include "core/geometry/alignment.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "core/geometry/symmetric_system.h"
 
 namespace camloc {
 namespace {
@@ -63,7 +64,7 @@ void solve_rotation_and_scale(const Moments& m, bool is_scale_free, Alignment* a
     alignment->rank = AlignmentRank::kLine;
     alignment->free_axis = svd.matrixU().col(0);
     const Eigen::Vector3d axis_b = svd.matrixV().col(0);
-    alignment->T_a_b.rotation = Eigen::Quaterniond::FromTwoVectors(axis_b, alignment->free_axis).normalized();
+    alignment->T_a_b.rotation = shortest_turn(axis_b, alignment->free_axis);
   } else {
     alignment->rank = AlignmentRank::kFull;
     if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0) signs.z() = -1;
@@ -138,7 +139,7 @@ void add_pose_points(const Rigid3& T_a_camera, const Rigid3& T_b_camera, double 
 Alignment align_rigid(std::span<const PointPair> pairs) { return align(pairs, false); }
 Alignment align_similarity(std::span<const PointPair> pairs) { return align(pairs, true); }
 
-double LeaveOneOutResidual::sigmas() const { return std::sqrt(std::max(0.0, error_m.dot(covariance.ldlt().solve(error_m)))); }
+double LeaveOneOutResidual::sigmas() const { return std::sqrt(std::max(0.0, error_m.dot(solve_symmetric<3>(covariance, error_m)))); }
 
 LeaveOneOutResidual predicted_residual(const Alignment& alignment, const PointPair& pair) {
   LeaveOneOutResidual residual;

@@ -4,7 +4,6 @@
 // The robust loop: sample, solve, score, polish; always the same number of times.
 #include "core/geometry/pnp_ransac.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +11,7 @@
 
 #include "core/geometry/p3p.h"
 #include "core/geometry/pose_jacobian.h"
+#include "core/geometry/symmetric_system.h"
 
 namespace camloc {
 namespace {
@@ -112,7 +112,7 @@ bool gauss_newton_step(const PoseScorer& pairs, std::size_t max_inliers, Rigid3*
   if (num_inliers < kMinPolishInliers) return false;
   Matrix6d hessian = hessian_of(sums);
   hessian.diagonal() *= 1.0 + 1e-6;  // keeps a flat direction from running away
-  const Vector6d change = -hessian.ldlt().solve(gradient_of(sums));
+  const Vector6d change = -solve_symmetric<6>(hessian, gradient_of(sums));
   if (!change.allFinite()) return false;
   *T_map_camera = moved_in_camera_axes(*T_map_camera, change);
   return true;

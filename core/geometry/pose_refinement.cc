@@ -10,6 +10,7 @@
 
 #include "core/geometry/pose_jacobian.h"
 #include "core/geometry/refinement_equations.h"
+#include "core/geometry/symmetric_system.h"
 
 namespace camloc {
 namespace {
@@ -68,7 +69,7 @@ NormalEquations<N> minimize(const Problem& problem, RobustKernel kernel, State* 
     Eigen::Matrix<double, N, N> damped = here.hessian;
     damped.diagonal() *= 1.0 + damping;
     damped.diagonal().array() += 1e-9;
-    const Eigen::Matrix<double, N, 1> change = -damped.ldlt().solve(here.gradient);
+    const Eigen::Matrix<double, N, 1> change = -solve_symmetric<N>(damped, here.gradient);
     if (!change.allFinite() || change.template lpNorm<Eigen::Infinity>() < 1e-8) break;
     const State candidate = moved<N>(*state, change);
     // What the step promises, in sigmas^2. It is far below the uncertainty of the pose: not worth another evaluation.

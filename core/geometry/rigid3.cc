@@ -61,6 +61,18 @@ Eigen::Quaterniond nearest_rotation(const Eigen::Matrix3d& almost_rotation) {
   return Eigen::Quaterniond(rotation).normalized();
 }
 
+Eigen::Quaterniond shortest_turn(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  constexpr double kOpposite = 1e-12;
+  const double cosine = from.dot(to);
+  if (cosine < kOpposite - 1) {
+    const Eigen::Vector3d axis = from.unitOrthogonal();
+    return {0, axis.x(), axis.y(), axis.z()};
+  }
+  const double s = std::sqrt(2 * (1 + cosine));  // twice the cosine of half the angle
+  const Eigen::Vector3d v = from.cross(to) / s;
+  return Eigen::Quaterniond(s / 2, v.x(), v.y(), v.z()).normalized();
+}
+
 double rotation_distance_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) { return log_so3(a.conjugate() * b).norm(); }
 
 Vector6d pose_error(const Rigid3& T_map_camera_true, const Rigid3& T_map_camera_estimate) {

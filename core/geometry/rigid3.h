@@ -44,6 +44,9 @@ struct Rigid3 {
 /// The closest rotation in the Frobenius sense; recorded pose files are orthonormal only to 4e-4.
 [[nodiscard]] Eigen::Quaterniond nearest_rotation(const Eigen::Matrix3d& almost_rotation);
 
+/// The smallest rotation that turns the unit vector `from` onto the unit vector `to`; about any axis where they are opposite.
+[[nodiscard]] Eigen::Quaterniond shortest_turn(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
 /// Angle of the relative rotation, radians in [0, pi].
 [[nodiscard]] double rotation_distance_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b);
 

@@ -17,6 +17,7 @@
 #include <signal.h>
 #include <sys/socket.h>
 
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <cstring>

@@ -4,12 +4,15 @@
 // The command line that both fake Kinects share: what device, what it shows, which faults, where it is steered and logged.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
 #include "tests/fakes/control_server.h"
 #include "tests/fakes/kinect_rig.h"
+
+namespace CLI {
+class App;
+}
 
 namespace camloc::fakes {
 

@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <numbers>
 
+#include "core/geometry/symmetric_system.h"
 #include "tests/geometry/generated.h"
 
 namespace camloc {
@@ -179,7 +179,7 @@ MonteCarlo monte_carlo(int count, bool is_planar) {
     for (PointPair& pair : noisy) pair.p_a += random_vector(rng, pair.sigma_m);
     const Alignment alignment = align_rigid(noisy);
     const Vector6d error = pose_error(T_a_b, alignment.T_a_b);
-    mean.nees += error.dot(alignment.covariance.ldlt().solve(error)) / kTrials;
+    mean.nees += squared_mahalanobis(error, alignment.covariance) / kTrials;
     mean.chi_squared_per_freedom += alignment.chi_squared / alignment.degrees_of_freedom / kTrials;
     const double sigmas = leave_one_out(noisy)[0].sigmas();
     mean.loo_squared += sigmas * sigmas / kTrials;

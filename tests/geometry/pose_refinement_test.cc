@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <opencv2/calib3d.hpp>
 
+#include "core/geometry/symmetric_system.h"
 #include "tests/geometry/allocation_counter.h"
 #include "tests/geometry/generated.h"
 
@@ -21,8 +21,6 @@ using testing::Scene;
 using testing::SceneOptions;
 
 constexpr double kChiSquared95Of6 = 12.592;
-
-double squared_mahalanobis(const Vector6d& error, const Matrix6d& covariance) { return error.dot(covariance.llt().solve(error)); }
 
 struct Consistency {
   double mean_nees = 0;

@@ -64,6 +64,17 @@ TEST(Rigid3, NearestRotationUndoesSmallDeformation) {
   EXPECT_NEAR(nearest_rotation(-Eigen::Matrix3d::Identity()).toRotationMatrix().determinant(), 1.0, 1e-12);
 }
 
+TEST(Rigid3, ShortestTurnTurnsOneDirectionOntoTheOther) {
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), tilted = Eigen::Vector3d(0.6, 0, 0.8),
+                        almost_back = Eigen::Vector3d(-1, 1e-5, 0).normalized();
+  for (const Eigen::Vector3d& to : {x, tilted, almost_back, Eigen::Vector3d(-x)}) {
+    const Eigen::Quaterniond turn = shortest_turn(x, to);
+    EXPECT_NEAR(turn.norm(), 1, 1e-12);
+    EXPECT_LT((turn * x - to).norm(), 1e-9) << to.transpose();
+    EXPECT_NEAR(rotation_distance_rad(turn, Eigen::Quaterniond::Identity()), std::acos(x.dot(to)), 1e-7) << to.transpose();
+  }
+}
+
 TEST(Rigid3, RotationDistanceIsTheAngle) {
   std::mt19937 rng(4);
   const Eigen::Quaterniond a = testing::random_pose(rng, 1).rotation;

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/geometry/symmetric_system.h"
 #include "core/localize/localizer.h"
 #include "core/map/map_view.h"
 #include "core/map/map_writer.h"
@@ -84,7 +85,7 @@ class SampleWorld {
 /// Squared Mahalanobis distance of the truth: chi-square with 6 degrees of freedom for an honest covariance.
 inline double nees(const Localization& result, const Rigid3& T_map_camera_true) {
   const Vector6d error = pose_error(T_map_camera_true, result.T_map_camera);
-  return error.dot(result.covariance.ldlt().solve(error));
+  return squared_mahalanobis(error, result.covariance);
 }
 inline constexpr double kNeesLimit = 22.46;  ///< exceeded by 0.1 % of honest poses
 

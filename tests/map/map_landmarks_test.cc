@@ -96,7 +96,7 @@ TEST_P(MapLandmarksInView, AreProjectedAndNoOthers) {
 /// A pose at which something is in view: from a corner towards the middle.
 Rigid3 looking_in() {
   const Eigen::Vector3d at(-6, -5, -1);
-  return {Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), -at), at};
+  return {shortest_turn(Eigen::Vector3d::UnitZ(), -at.normalized()), at};
 }
 
 TEST(MapLandmarks, KeepsTheMostObserved) {

@@ -4,16 +4,15 @@
 // Runs one sub-command of camloc in this process and keeps what it printed. And a folder that vanishes with the test.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
+
+namespace CLI {
+class App;
+}
 
 namespace camloc::tools {
 
@@ -23,21 +22,7 @@ struct CommandOutput {
 };
 
 /// `arguments` as after "camloc". A usage error gives exit code 2, as main does.
-inline CommandOutput run_command(void (*add)(CLI::App&, int&), std::vector<std::string> arguments) {
-  CLI::App app;
-  CommandOutput output;
-  add(app, output.exit_code);
-  std::reverse(arguments.begin(), arguments.end());  // the order CLI::App::parse(vector) wants
-  ::testing::internal::CaptureStdout();
-  ::testing::internal::CaptureStderr();
-  try {
-    app.parse(arguments);
-  } catch (const CLI::ParseError&) { output.exit_code = 2; }
-  std::fflush(stdout);
-  output.out = ::testing::internal::GetCapturedStdout();
-  output.err = ::testing::internal::GetCapturedStderr();
-  return output;
-}
+CommandOutput run_command(void (*add)(CLI::App&, int&), std::vector<std::string> arguments);
 
 class TemporaryFolder {
  public:

@@ -5,6 +5,7 @@
 // It is `camloc map build` that is run, so that what is compared is what users get.
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>

@@ -4,7 +4,9 @@
 // What `camloc bench` does besides localizing.
 #pragma once
 
-#include <CLI/CLI.hpp>
+namespace CLI {
+class App;
+}
 
 namespace camloc::bench {
 

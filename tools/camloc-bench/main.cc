@@ -4,6 +4,7 @@
 // `camloc bench`: time of every stage and accuracy, side by side with plain OpenCV calls on the same frames in one run.
 #include <time.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "core/base/order_statistics.h"
+#include "core/geometry/symmetric_system.h"
 
 namespace camloc::camera_tool {
 namespace {
@@ -79,7 +80,7 @@ Eigen::Vector3d least_squares_plane(const std::vector<Sample>& samples) {
     A += sample.ray * sample.ray.transpose();
     b += sample.inverse_z * sample.ray;
   }
-  return A.ldlt().solve(b);
+  return solve_symmetric<3>(A, b);
 }
 
 /// Least squares, three times, without what is far off.
@@ -132,7 +133,7 @@ void fit_line(DepthFit* fit) {
     b += weight(plane) * plane.z_m * row;
   }
   if (!fit->has_offset) A(1, 1) = 1;
-  const Eigen::Vector2d solution = A.ldlt().solve(b);
+  const Eigen::Vector2d solution = solve_symmetric<2>(A, b);
   double chi2 = 0;
   for (const DepthPlane& plane : fit->planes) chi2 += weight(plane) * std::pow(plane.z_m - solution[0] * plane.true_z_m - solution[1], 2);
   const double num_free = static_cast<double>(fit->planes.size()) - (fit->has_offset ? 2 : 1);
@@ -154,7 +155,7 @@ DepthNoise fit_noise(const std::vector<DepthPlane>& planes) {
     A += row * row.transpose();
     b += row * (plane.noise_m / std::max(plane.noise_m, 1e-5));
   }
-  Eigen::Vector2d solution = A.ldlt().solve(b);
+  Eigen::Vector2d solution = solve_symmetric<2>(A, b);
   if (solution[0] < 0 || !solution.allFinite()) solution = {0, b[1] / A(1, 1)};
   if (solution[1] < 0) solution = {b[0] / A(0, 0), 0};
   return {solution[0], solution[1]};
@@ -199,7 +200,7 @@ void solve_translation(const std::vector<PlanePair>& pairs, ExtrinsicFit* fit) {
     b += (pair.color_distance_m - pair.depth_distance_m) * row;
   }
   if (!has_scale) A(3, 3) = 1;
-  const Eigen::Vector4d solution = A.ldlt().solve(b);
+  const Eigen::Vector4d solution = solve_symmetric<4>(A, b);
   double squares = 0;
   for (const PlanePair& pair : pairs) {
     squares += std::pow(pair.color_distance_m - (1 + solution[3]) * pair.depth_distance_m - pair.color_normal.dot(solution.head<3>()), 2);

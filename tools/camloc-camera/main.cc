@@ -3,6 +3,7 @@
 //
 // camloc-camera: finds the calibration of a camera; `camloc camera calibrate` runs this program. A board in front of the camera, or
 // recorded, becomes a camera file.
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <map>

@@ -3,6 +3,7 @@
 //
 // camloc-map build: a recording becomes a map file. Arguments become a BuildRequest here; build_map does the work, watched by the
 // terminal, and its summary is printed as a table or JSON.
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <map>
 #include <memory>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // camloc-map eval: a map against a laser scan, or against the depth images of a recording with trusted poses.
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // camloc-map export: a map for other programs to look at.
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <map>
 #include <memory>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // camloc-map georef: where the map lies in the site, from surveyed control points.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
 #include <set>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // camloc-map merge: two maps of one building become one.
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "core/map/map_unpack.h"

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // `camloc map upgrade`: what newer versions know about a map, for a map that is there.
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // camloc-map view: a picture of a map, and where in it a fix is to be expected.
+#include <CLI/CLI.hpp>
 #include <map>
 #include <memory>
 

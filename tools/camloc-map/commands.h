@@ -5,9 +5,11 @@
 // exit code: 0 done, 1 failed, 2 usage or configuration.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include "tools/common/command_line.h"
+
+namespace CLI {
+class App;
+}
 
 namespace camloc::mapping {
 

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // camloc-map: makes maps, on a workstation. `camloc map build` runs this program.
+
+#include <CLI/CLI.hpp>
+
 #include "core/map/mapping_guard.h"
 #include "tools/camloc-map/commands.h"
 

@@ -3,6 +3,7 @@
 //
 // `camloc camera list`, `show` and `import`: which cameras there are, what is in a camera file, a file of others as ours.
 // Calibrating is the program camloc-camera.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

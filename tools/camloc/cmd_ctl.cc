@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // `camloc ctl`: asks a running camlocd for its status, to reload its map, to forget its pose, and tells it where the camera is about.
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>

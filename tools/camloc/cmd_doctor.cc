@@ -4,6 +4,7 @@
 // `camloc doctor`: what of an installation works, and what to do about the rest. Changes nothing.
 #include <grp.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // `camloc frames`: which way the axes point, by one example that is computed here with the code that localizes.
+#include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 #include <cstdio>
 #include <memory>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // `camloc localize`: every frame of a recording against a map; a trajectory and, on request, everything known per frame.
+#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <map>

@@ -4,6 +4,7 @@
 // `camloc monitor`: what camlocd publishes, as it arrives.
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <deque>

@@ -3,6 +3,7 @@
 //
 // `camloc wakeup`: the kidnapped robot as a test of a map. Where does a camera that is switched on find itself, how fast, and is it
 // ever wrong?
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <map>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // `camloc COMMAND`: the commands built in below, or the program camloc-COMMAND.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <map>

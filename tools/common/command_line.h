@@ -5,10 +5,13 @@
 // 0 done, 1 failed, 2 usage or configuration.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "core/base/result.h"
+
+namespace CLI {
+class App;
+}
 
 namespace camloc::tools {
 

@@ -5,7 +5,6 @@
 // taken in the axes of the reference.
 #include "tools/evaluation/trajectory_error.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include <numeric>
 
 #include "core/geometry/alignment.h"
+#include "core/geometry/symmetric_system.h"
 #include "core/io/sequence.h"
 #include "tools/common/text_format.h"
 
@@ -114,7 +114,7 @@ TrajectoryErrors compare(const EstimatedTrajectory& estimate, const ReferencePos
     if (is_misleading(*truth, estimated)) ++errors.num_misleading;
     if (!pose.covariance) continue;
     const Vector6d error = pose_error(*truth, estimated);
-    all_nees.push_back(error.dot(rotate_covariance(T.rotation, *pose.covariance).ldlt().solve(error)));
+    all_nees.push_back(squared_mahalanobis(error, rotate_covariance(T.rotation, *pose.covariance)));
   }
   for (double& share : errors.share_within) share = num_frames == 0 ? 0.0 : share / static_cast<double>(num_frames);
   errors.translation_m = statistics(translations);

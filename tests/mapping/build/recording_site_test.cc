@@ -18,7 +18,7 @@ namespace {
 SlamResult walk(const Eigen::Vector3d& up) {
   SlamResult result;
   result.segments.push_back({7, 40, 40, {}, {}});
-  const Eigen::Quaterniond R_map_world = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up);
+  const Eigen::Quaterniond R_map_world = shortest_turn(Eigen::Vector3d::UnitZ(), up.normalized());
   for (std::uint64_t i = 0; i < 40; ++i) {
     Eigen::Matrix3d R;  // x right, y down, z forward, in a world with z up
     const double yaw = 0.1 * static_cast<double>(i);
@@ -35,7 +35,7 @@ SlamResult walk(const Eigen::Vector3d& up) {
 std::vector<KeyframeSurface> floor_seen(const SlamResult& result, const Eigen::Vector3d& up) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> unit(-3, 3);
-  const Eigen::Quaterniond R_map_world = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up);
+  const Eigen::Quaterniond R_map_world = shortest_turn(Eigen::Vector3d::UnitZ(), up.normalized());
   std::vector<KeyframeSurface> surfaces;
   for (const SlamPose& pose : result.poses) {
     KeyframeSurface& surface = surfaces.emplace_back(KeyframeSurface{pose.frame, {}});

@@ -4,6 +4,7 @@
 // What a person gets who merges maps on the command line: a map, a table, or one line that says what is wrong.
 #include <gtest/gtest.h>
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 
 #include "core/map/map_view.h"

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Usage errors, errors and texts: one line each, and the exit code.
+
 #include "tools/common/command_line.h"
 
 #include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
 
 #include "tests/tools/command_runner.h"
 

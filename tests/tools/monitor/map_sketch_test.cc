@@ -33,7 +33,7 @@ MapSketch room(int columns, int rows) {
 
 /// A camera at (x, y) that looks along `forward`.
 Rigid3 camera_at(double x, double y, const Eigen::Vector3d& forward) {
-  return {Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), forward), {x, y, 1.5}};
+  return {shortest_turn(Eigen::Vector3d::UnitZ(), forward.normalized()), {x, y, 1.5}};
 }
 
 TEST(MapSketchTest, KeepsItsSizeAndShowsTheCamera) {

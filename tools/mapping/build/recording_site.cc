@@ -120,7 +120,7 @@ Result<GravityEstimate> find_up(const SlamResult& result, const std::vector<Keyf
 }
 
 void level(const Eigen::Vector3d& up_map, std::uint32_t segment, SlamResult* result) {
-  const Rigid3 T_level_map{Eigen::Quaterniond::FromTwoVectors(up_map, Eigen::Vector3d::UnitZ()), Eigen::Vector3d::Zero()};
+  const Rigid3 T_level_map{shortest_turn(up_map.normalized(), Eigen::Vector3d::UnitZ()), Eigen::Vector3d::Zero()};
   for (SlamPose& pose : result->poses) {
     if (pose.segment == segment) pose.T_map_camera = T_level_map * pose.T_map_camera;
   }

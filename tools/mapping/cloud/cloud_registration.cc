@@ -5,12 +5,12 @@
 // motion (and the scale, where asked). The last iterations see all correspondences, so that trimming biases nothing.
 #include "tools/mapping/cloud/cloud_registration.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/order_statistics.h"
+#include "core/geometry/symmetric_system.h"
 #include "tools/mapping/cloud/point_cloud.h"
 
 namespace camloc::mapping {
@@ -92,9 +92,9 @@ Vector7d take_step(const Equations& equations, const Eigen::Vector3d& center, bo
   information.diagonal().array() += 1e-6 * information.diagonal().array() + 1e-9;  // directions nothing holds stay where they are
   Vector7d step = Vector7d::Zero();
   if (has_scale) {
-    step = -information.ldlt().solve(equations.gradient);
+    step = -solve_symmetric<7>(information, equations.gradient);
   } else {
-    step.head<6>() = -information.topLeftCorner<6, 6>().ldlt().solve(equations.gradient.head<6>());
+    step.head<6>() = -solve_symmetric<6>(information.topLeftCorner<6, 6>(), equations.gradient.head<6>());
   }
   if (!step.allFinite()) return Vector7d::Zero();
   const Eigen::Quaterniond turn = exp_so3(step.head<3>());
@@ -112,8 +112,8 @@ void describe(const Equations& equations, bool has_scale, std::size_t num_pairs,
   result->weakest_share = std::max(0.0, solver.eigenvalues()[0]);
   result->weakest_direction = solver.eigenvectors().col(0);
   if (!has_scale) return;
-  const Matrix7d covariance = equations.information.ldlt().solve(Matrix7d::Identity());
-  result->sigma_scale = result->rms_m * std::sqrt(std::max(0.0, covariance(6, 6)));
+  const Vector7d of_scale = solve_symmetric<7>(equations.information, Vector7d::Unit(6));  // a column of the covariance
+  result->sigma_scale = result->rms_m * std::sqrt(std::max(0.0, of_scale[6]));
 }
 
 }  // namespace
