@@ -33,6 +33,7 @@ const char* to_string(Reason reason) {
     case Reason::kImplausibleMotion: return "pose jumps farther than a camera can move";
     case Reason::kUncertain: return "pose is too uncertain";
     case Reason::kMapDamaged: return "map file was damaged while in use";
+    case Reason::kNoParallax: return "without depth it may be a picture of the place; move sideways";
   }
   return "unknown";
 }

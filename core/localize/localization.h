@@ -39,6 +39,7 @@ enum class Reason : std::uint8_t {
   kImplausibleMotion,
   kUncertain,  ///< covariance too large to be of use
   kMapDamaged,
+  kNoParallax,  ///< without depth, and the motion has not shown yet that this is the place and no picture of it
 };
 
 [[nodiscard]] const char* to_string(State state);

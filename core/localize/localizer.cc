@@ -80,12 +80,18 @@ Localizer::Localizer(const MapView& map, const RgbdCamera& camera, const Localiz
       extractor_(camera, options_.orb, options_.use_depth),
       rivals_(map, options_.numbers),
       landmarks_(map, camera.color, landmark_options(options_.numbers), &rivals_.look_alikes()),
-      solver_(camera, PyramidLevels(options_.orb.scale_factor, options_.orb.num_levels), solver_options(options_), &timer_),
+      levels_(options_.orb.scale_factor, options_.orb.num_levels),
+      solver_(camera, levels_, solver_options(options_), &timer_),
       list_(map.info().max_keyframe_landmarks),
       visit_of_landmark_(map.landmarks().size(), 0),
       gate_(options_.numbers, options_.use_tracking),
+      parallax_({.max_sightings = static_cast<std::size_t>(options_.orb.num_features),
+                 .min_shared = options_.numbers.min_parallax_landmarks,
+                 .min_evidence = options_.numbers.min_parallax_evidence}),
       calibration_(options_.numbers) {
   view_.reserve(static_cast<std::size_t>(options_.orb.num_features));
+  inliers_.reserve(view_.features.keypoints.capacity());
+  sightings_.reserve(inliers_.capacity());
   found_.reserve(2 * static_cast<std::size_t>(std::max(1, options_.numbers.max_places)) + 2 * rivals_.capacity());
   for (const ProposerEntry& entry : proposers)
     proposers_.push_back(entry.make({map_, &camera_, &options_.numbers, options_.orb.num_features}));
@@ -102,6 +108,7 @@ const Localization& Localizer::process(const Frame& frame) {
     timer_.finish(Stage::kCandidates);
     Candidate candidate = examine(frame, proposals);
     candidate.reason = gate_.judge(frame.stamp_ns, candidate);
+    if (candidate.reason == Reason::kNone && !is_shown_no_picture(frame.stamp_ns, candidate)) candidate.reason = Reason::kNoParallax;
     if (is_better(candidate, best)) {
       best = candidate;
       proposed_by = proposer.get();
@@ -116,6 +123,11 @@ const Localization& Localizer::process(const Frame& frame) {
 
 void Localizer::hint(const PoseHint& hint) {
   for (const auto& proposer : proposers_) proposer->on_hint(hint);
+}
+
+void Localizer::reset() {
+  gate_.reset();
+  parallax_.reset();
 }
 
 void Localizer::begin(const Frame& frame) {
@@ -185,6 +197,27 @@ void Localizer::ask_rivals(Hypothesis* best, std::uint64_t seed) {
   }
 }
 
+// Depth shows it at once; without depth motion has to, before the first pose and after each time that the camera was lost.
+bool Localizer::is_shown_no_picture(std::int64_t stamp_ns, const Candidate& candidate) {
+  const bool has_depth = candidate.evidence.num_map_depth >= options_.numbers.min_map_depth_samples;
+  if (has_depth || candidate.is_continuation || gate_.predict(stamp_ns)) return true;
+  if (!options_.use_tracking) return false;
+  // Once more, for its inliers: other poses were solved after it.
+  const PoseEvidence again = solver_.refine(&landmarks_, candidate.evidence.T_map_camera);
+  if (!again.is_found) return false;
+  inliers_.clear();
+  sightings_.clear();
+  solver_.append_inliers(&inliers_);
+  const Rigid3 T_camera_map = again.T_map_camera.inverse();
+  const double pixel = 1 / camera_.color.mean_focal_px();
+  for (const LandmarkObservation& inlier : inliers_) {
+    const Eigen::Vector3d p = T_camera_map * landmarks_.position_m(static_cast<std::int32_t>(inlier.landmark)).cast<double>();
+    sightings_.push_back({inlier.landmark, view_.normalized[inlier.feature].cast<double>(), p.head<2>() / p.z(),
+                          levels_.sigma_px(view_.features.keypoints[inlier.feature].level) * pixel});
+  }
+  return parallax_.add(stamp_ns, sightings_);
+}
+
 void Localizer::solve(const Proposal& proposal, std::uint64_t seed) {
   if (proposal.num_keyframes == 0) {
     const auto matches = solver_.search_by_projection(&landmarks_, proposal.T_map_camera, proposal.radius_px);
@@ -235,6 +268,7 @@ const Localization& Localizer::accept(const Frame& frame, const Candidate& candi
   result_.quality = quality_of(candidate.evidence, candidate.standing.margin);
   if (!candidate.is_continuation) ++result_.reset_counter;
   result_.jump_m = gate_.accept(frame.stamp_ns, candidate);
+  parallax_.reset();
   return report(candidate);
 }
 

@@ -18,6 +18,7 @@
 #include "core/localize/gate.h"
 #include "core/localize/localization.h"
 #include "core/localize/localizer_numbers.h"
+#include "core/localize/motion_parallax.h"
 #include "core/localize/pose_hint.h"
 #include "core/localize/proposer.h"
 #include "core/localize/rival_poses.h"
@@ -49,7 +50,7 @@ class Localizer {
   /// The next frames are looked for there first; ignored unless valid.
   void hint(const PoseHint& hint);
   /// Forgets the last pose.
-  void reset() { gate_.reset(); }
+  void reset();
   [[nodiscard]] const CalibrationHealth& calibration() const { return calibration_.health(); }
 
  private:
@@ -61,6 +62,7 @@ class Localizer {
   void keep(const PoseEvidence& found);
   void ask_rivals(Hypothesis* best, std::uint64_t seed);
   [[nodiscard]] std::size_t best_of_found() const;
+  [[nodiscard]] bool is_shown_no_picture(std::int64_t stamp_ns, const Candidate& candidate);
   void watch_calibration(const PoseEvidence& evidence);
   const Localization& accept(const Frame& frame, const Candidate& candidate);
   const Localization& decline(const Frame& frame, const Candidate& candidate);
@@ -75,6 +77,7 @@ class Localizer {
   FrameFeatures view_;  ///< of the frame at hand
   RivalPoses rivals_;
   MapLandmarks landmarks_;
+  PyramidLevels levels_;
   PoseSolver solver_;
   std::vector<std::unique_ptr<Proposer>> proposers_;
   std::vector<Hypothesis> found_;                 ///< for the proposals at hand
@@ -82,6 +85,9 @@ class Localizer {
   std::vector<std::uint32_t> visit_of_landmark_;  ///< the visit_ at which a landmark became a candidate
   std::uint32_t visit_ = 0;
   Gate gate_;
+  MotionParallax parallax_;
+  std::vector<LandmarkObservation> inliers_;  ///< of the pose at hand, for parallax_
+  std::vector<LandmarkSighting> sightings_;   ///< the same
   CalibrationMonitor calibration_;
   Localization result_;
 };

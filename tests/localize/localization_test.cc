@@ -13,7 +13,7 @@ namespace {
 TEST(Localization, EveryNameIsItsOwn) {
   std::set<std::string> names;
   for (int i = 0; i <= static_cast<int>(State::kCoasting); ++i) EXPECT_TRUE(names.insert(to_string(static_cast<State>(i))).second) << i;
-  for (int i = 0; i <= static_cast<int>(Reason::kMapDamaged); ++i) EXPECT_TRUE(names.insert(to_string(static_cast<Reason>(i))).second) << i;
+  for (int i = 0; i <= static_cast<int>(Reason::kNoParallax); ++i) EXPECT_TRUE(names.insert(to_string(static_cast<Reason>(i))).second) << i;
   for (int i = 0; i < kNumStages; ++i) EXPECT_TRUE(names.insert(to_string(static_cast<Stage>(i))).second) << i;
   EXPECT_EQ(names.count("unknown") + names.count("UNKNOWN"), 0U);
 }

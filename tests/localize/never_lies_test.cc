@@ -4,6 +4,7 @@
 // Whatever the camera delivers, a pose that is called LOCALIZED is right: its covariance does not exclude the truth.
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <limits>
 
 #include "tests/localize/sample_world.h"
@@ -129,17 +130,46 @@ TEST(NeverLies, ImagesOfOnePlaceWithDepthOfAnother) {
 
 TEST(NeverLies, DepthThatSaysNothing) {
   const SampleWorld& world = SampleWorld::get();
-  Localizer localizer(world.map(), world.camera(), {.orb = {}, .use_tracking = false});
-  int num_localized = 0, num_frames = 0;
-  for (std::uint64_t i = 1; i < testing::kMappedFrames; i += 12) {
-    for (const int raw : {0, 65535, 1}) {
+  for (const int raw : {0, 65535, 1}) {
+    Localizer localizer(world.map(), world.camera(), {});
+    int num_localized = 0;
+    for (std::uint64_t i = 1; i < testing::kMappedFrames; ++i) {
       FrameBuffer frame = world.frame(i);
       std::fill(frame.depth.pixels.begin(), frame.depth.pixels.end(), static_cast<std::uint16_t>(raw));
       expect_truth(&localizer, frame, i, &num_localized);
-      ++num_frames;
+    }
+    EXPECT_GE(num_localized, static_cast<int>(testing::kMappedFrames) - 60) << "within two seconds, and then always; depth " << raw;
+  }
+}
+
+/// Frames as a camera without depth gives them: `index(k)` of the path is what it sees at its k-th frame. How many are localized.
+int num_localized_without_depth(bool use_tracking, const std::function<std::uint64_t(std::uint64_t)>& index) {
+  const SampleWorld& world = SampleWorld::get();
+  Localizer localizer(world.map(), world.camera(), {.orb = {}, .use_tracking = use_tracking, .use_depth = false});
+  int num_localized = 0;
+  for (std::uint64_t k = 0; k < 60; ++k) {
+    const FrameBuffer frame = world.frame(index(k), k);
+    const Localization& result = localizer.process(frame.view());
+    num_localized += result.state == State::kLocalized ? 1 : 0;
+    if (result.state != State::kLocalized) {
+      EXPECT_EQ(result.reason, Reason::kNoParallax) << k;
+      EXPECT_EQ(result.state, State::kCoarse) << k;
+      EXPECT_LT((result.T_map_camera.translation - sample_pose(index(k)).translation).norm(), 0.1) << "a place to look at, though";
     }
   }
-  EXPECT_EQ(num_localized, num_frames) << "no depth is no reason to be lost";
+  return num_localized;
+}
+
+TEST(NeverLies, AStillPictureWithoutDepthIsNoPlace) {
+  EXPECT_EQ(num_localized_without_depth(true, [](std::uint64_t) { return 31; }), 0);
+}
+
+TEST(NeverLies, SingleFramesWithoutDepthMayAllBePictures) {
+  EXPECT_EQ(num_localized_without_depth(false, [](std::uint64_t k) { return k; }), 0);
+}
+
+TEST(NeverLies, MotionShowsThatItIsThePlace) {
+  EXPECT_GE(num_localized_without_depth(true, [](std::uint64_t k) { return k; }), 30);
 }
 
 TEST(NeverLies, DepthThatContradicts) {
