@@ -13,9 +13,10 @@ namespace camloc {
 struct PoseEvidence {
   bool is_found = false;
   Rigid3 T_map_camera;
-  Matrix6d covariance = Matrix6d::Zero();  ///< of pose_error(): metres, radians, axes of `map`
-  std::uint32_t num_visible = 0;           ///< landmarks that should be in the image, as far as they were projected
-  std::uint32_t num_matches = 0;           ///< of those, found in their window; before guided refinement all that were given
+  Matrix6d covariance = Matrix6d::Zero();         ///< of pose_error(): metres, radians, axes of `map`; inliers err by themselves
+  Matrix6d shared_covariance = Matrix6d::Zero();  ///< to be added: what inliers share, see shared_error_covariance()
+  std::uint32_t num_visible = 0;                  ///< landmarks that should be in the image, as far as they were projected
+  std::uint32_t num_matches = 0;                  ///< of those, found in their window; before guided refinement all that were given
   std::uint32_t num_inliers = 0;
   std::uint32_t num_distinct_visible = 0, num_distinct_inliers = 0;  ///< the same without landmarks that have twins elsewhere
   double spread = 0;                                                 ///< share of the image's 8 x 6 cells that hold an inlier

@@ -104,6 +104,8 @@ PoseEvidence PoseSolver::refine(LandmarkSource* landmarks, const Rigid3& T_map_c
   if (refined.is_converged && refined.num_inliers >= options_.min_inliers) {
     summarize(refined, &evidence);
     if (options_.gathers_evidence) {
+      evidence.shared_covariance = shared_error_covariance(
+          pairs_, inlier_mask_, refined.T_map_camera, {focal_px_, refinement_.depth_noise, options_.use_depth, options_.shared_errors});
       count_distinct(*landmarks, &evidence);
       measure_focal_scale(&evidence);
       measure_map_depth(*landmarks, visible_, &evidence);

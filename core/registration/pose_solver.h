@@ -26,6 +26,7 @@
 #include "core/registration/keypoint_noise.h"
 #include "core/registration/landmark_source.h"
 #include "core/registration/pose_evidence.h"
+#include "core/registration/shared_errors.h"
 
 namespace camloc {
 
@@ -45,6 +46,7 @@ struct PoseSolverOptions {
   /// Also asks what verification asks: a free focal length, landmarks seen through, inliers that share their errors. A tenth of the
   /// time.
   bool gathers_evidence = true;
+  SharedErrors shared_errors;  ///< of the landmarks; part of the evidence
 };
 
 /// An inlier.
