@@ -9,6 +9,7 @@
 
 #include "core/base/stage_timer.h"
 #include "core/geometry/rigid3.h"
+#include "core/localize/integrity.h"
 #include "core/registration/rivals.h"
 
 namespace camloc {
@@ -55,6 +56,8 @@ struct Localization {
   Rigid3 T_map_camera;
   Matrix6d covariance = Matrix6d::Zero();  ///< of pose_error(): metres, radians, axes of `map`
   int quality = -1;                        ///< 0..100, -1 when there is no pose
+  double integrity_risk = 1;               ///< that the pose is off by more than 25 cm or 10 deg; 1 when there is none
+  Protection protection;                   ///< radii that hold the error of a pose at the right place
   bool is_tracked = false;                 ///< found from the prediction, not by global search
   std::uint32_t num_features = 0;
   PoseEvidence evidence;                            ///< of the pose, or of the best candidate for one; before motion and map are asked

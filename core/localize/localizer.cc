@@ -57,8 +57,9 @@ MapLandmarksOptions landmark_options(const LocalizerNumbers& numbers) {
   return options;
 }
 
-PoseSolverOptions solver_options(const LocalizerOptions& options) {
+PoseSolverOptions solver_options(const LocalizerOptions& options, const MapInfo& map) {
   PoseSolverOptions solver;
+  solver.shared_errors = {map.pose_sigma_m, map.pose_sigma_rad};
   solver.max_features = options.orb.num_features;
   solver.max_candidates = kMaxCandidates;
   solver.ransac_iterations = options.numbers.ransac_iterations;
@@ -81,7 +82,7 @@ Localizer::Localizer(const MapView& map, const RgbdCamera& camera, const Localiz
       rivals_(map, options_.numbers),
       landmarks_(map, camera.color, landmark_options(options_.numbers), &rivals_.look_alikes()),
       levels_(options_.orb.scale_factor, options_.orb.num_levels),
-      solver_(camera, levels_, solver_options(options_), &timer_),
+      solver_(camera, levels_, solver_options(options_, map.info()), &timer_),
       list_(map.info().max_keyframe_landmarks),
       visit_of_landmark_(map.landmarks().size(), 0),
       gate_(options_.numbers, options_.use_tracking),
@@ -262,9 +263,9 @@ void Localizer::watch_calibration(const PoseEvidence& evidence) {
 
 const Localization& Localizer::accept(const Frame& frame, const Candidate& candidate) {
   result_.state = State::kLocalized;
-  result_.has_pose = true;
-  result_.T_map_camera = candidate.evidence.T_map_camera;
-  result_.covariance = with_map_uncertainty(candidate.evidence.covariance);
+  shared_covariance_ = candidate.evidence.shared_covariance;
+  last_risk_features_ = risk_features(candidate.evidence, candidate.standing, candidate.is_continuation);
+  set_pose(candidate.evidence.T_map_camera, candidate.evidence.covariance + shared_covariance_, last_risk_features_);
   result_.quality = quality_of(candidate.evidence, candidate.standing.margin);
   if (!candidate.is_continuation) ++result_.reset_counter;
   result_.jump_m = gate_.accept(frame.stamp_ns, candidate);
@@ -276,16 +277,14 @@ const Localization& Localizer::decline(const Frame& frame, const Candidate& cand
   result_.state = State::kLost;
   if (const auto predicted = gate_.predict(frame.stamp_ns, options_.max_coast_ns)) {
     result_.state = State::kCoasting;
-    result_.has_pose = true;
-    result_.T_map_camera = predicted->T_map_camera;
-    result_.covariance = with_map_uncertainty(predicted->covariance);
-    result_.quality = 0;
+    set_pose(predicted->T_map_camera, predicted->covariance + shared_covariance_, last_risk_features_);
   } else if (candidate.evidence.is_found && candidate.evidence.num_inliers >= options_.numbers.min_coarse_inliers) {
     result_.state = State::kCoarse;
-    result_.has_pose = true;
-    result_.T_map_camera = candidate.evidence.T_map_camera;
-    result_.covariance = with_map_uncertainty(candidate.evidence.covariance) + coarse_uncertainty();
-    result_.quality = 0;
+    const Matrix6d covariance = candidate.evidence.covariance + candidate.evidence.shared_covariance;
+    set_pose(candidate.evidence.T_map_camera, covariance, risk_features(candidate.evidence, candidate.standing, candidate.is_continuation));
+    // The risk is that of the candidate; what is published beside it is a hint for people.
+    result_.covariance += coarse_uncertainty();
+    result_.protection = protection_of(result_.covariance);
   }
   return report(candidate);
 }
@@ -298,6 +297,15 @@ const Localization& Localizer::report(const Candidate& candidate) {
   timer_.finish(Stage::kVerify);
   result_.stage_ns = timer_.stop();
   return result_;
+}
+
+void Localizer::set_pose(const Rigid3& T_map_camera, const Matrix6d& covariance, const RiskFeatures& features) {
+  result_.has_pose = true;
+  result_.T_map_camera = T_map_camera;
+  result_.covariance = with_map_uncertainty(covariance);
+  result_.integrity_risk = integrity_risk(features, result_.covariance);
+  result_.protection = protection_of(result_.covariance);
+  result_.quality = 0;
 }
 
 Matrix6d Localizer::with_map_uncertainty(const Matrix6d& covariance) const {

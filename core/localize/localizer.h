@@ -67,6 +67,7 @@ class Localizer {
   const Localization& accept(const Frame& frame, const Candidate& candidate);
   const Localization& decline(const Frame& frame, const Candidate& candidate);
   const Localization& report(const Candidate& candidate);
+  void set_pose(const Rigid3& T_map_camera, const Matrix6d& covariance, const RiskFeatures& features);
   [[nodiscard]] Matrix6d with_map_uncertainty(const Matrix6d& covariance) const;
 
   const MapView* map_;
@@ -88,7 +89,9 @@ class Localizer {
   MotionParallax parallax_;
   std::vector<LandmarkObservation> inliers_;  ///< of the pose at hand, for parallax_
   std::vector<LandmarkSighting> sightings_;   ///< the same
+  Matrix6d shared_covariance_ = Matrix6d::Zero();  ///< of the last pose; the gate weighs poses without it
   CalibrationMonitor calibration_;
+  RiskFeatures last_risk_features_{};  ///< of the last pose, while it is predicted from
   Localization result_;
 };
 

@@ -12,18 +12,19 @@
 #include "core/io/camera_file.h"
 #include "core/map/map_view.h"
 #include "tools/camloc/commands.h"
+#include "tools/camloc/eval_risk.h"
 #include "tools/common/command_line.h"
 #include "tools/common/text_format.h"
+#include "tools/evaluation/risk_chart.h"
 #include "tools/evaluation/top_view.h"
 #include "tools/evaluation/trajectory_error.h"
 
 namespace camloc::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct EvalArguments {
   std::string estimate_path, reference_path, align = "none", align_by_path, align_reference_path, frames, camera_path, map_path, png_path;
+  RiskArguments risk;
   bool is_json = false;
 };
 
@@ -134,10 +135,36 @@ Result<std::optional<Rigid3>> find_alignment(const EvalArguments& arguments, con
   return Alignment(align_by_poses(*other, lookup(*other_reference)));
 }
 
-Status eval(const EvalArguments& arguments) {
+/// Adds to `json`, or prints where there is none.
+Status eval_risk(const RiskArguments& arguments, const ReferencePose& reference, const Rigid3& T_reference_estimate, Json* json) {
+  const auto judged = judge_all(arguments, reference, T_reference_estimate);
+  if (!judged) return judged.status();
+  const RiskReport report = make_risk_report(judged->poses, judged->num_frames);
+  if (!arguments.png_path.empty()) {
+    if (Status status = write_risk_chart(report, arguments.png_path); !status) return status;
+  }
+  if (json != nullptr)
+    (*json)["risk"] = risk_json(report);
+  else
+    print_risk(report);
+  if (!arguments.is_calibrating) return Status::ok();
+  const RiskFit fit = fit_risk(judged->poses);
+  if (json != nullptr)
+    (*json)["risk"]["calibration"] = risk_json(fit);
+  else
+    print_risk(fit);
+  return Status::ok();
+}
+
+Status check_outputs(const EvalArguments& arguments) {
   if (!arguments.png_path.empty()) {
     if (Status status = check_output_path("--png", arguments.png_path); !status) return status;
   }
+  return arguments.risk.png_path.empty() ? Status::ok() : check_output_path("--risk-png", arguments.risk.png_path);
+}
+
+Status eval(const EvalArguments& arguments) {
+  if (Status status = check_outputs(arguments); !status) return status;
   auto estimate = read_trajectory(arguments.estimate_path);
   if (!estimate) return estimate.status();
   auto reference = read_reference(arguments, arguments.reference_path, arguments.frames, *estimate);
@@ -155,10 +182,14 @@ Status eval(const EvalArguments& arguments) {
   if (!arguments.png_path.empty()) {
     if (Status status = draw(arguments, *estimate, *reference, errors); !status) return status;
   }
-  if (arguments.is_json)
-    std::printf("%s\n", errors_json(errors, *estimate).dump(1).c_str());
-  else
-    print_errors(errors, *estimate);
+  Json json = errors_json(errors, *estimate);
+  if (!arguments.is_json) print_errors(errors, *estimate);
+  if (!arguments.risk.records_path.empty()) {
+    const Rigid3 T_reference_estimate = alignment.value().value_or(Rigid3{});
+    Status status = eval_risk(arguments.risk, lookup(*reference), T_reference_estimate, arguments.is_json ? &json : nullptr);
+    if (!status) return status;
+  }
+  if (arguments.is_json) std::printf("%s\n", json.dump(1).c_str());
   return Status::ok();
 }
 
@@ -187,6 +218,14 @@ void add_eval_command(CLI::App& app, int& exit_code) {
                       "Camera file that says whose poses the folder has (default: as noted in the estimate)");
   CLI::Option* png = command->add_option("--png", arguments->png_path, "Write a top view of map, reference and estimate");
   command->add_option("--map", arguments->map_path, "Map to draw in the picture")->needs(png);
+  CLI::Option* records = command->add_option("--records", arguments->risk.records_path,
+                                             "What 'camloc localize --json' wrote beside the estimate: were the promised risks and "
+                                             "protection levels kept?");
+  command->add_option("--risk-png", arguments->risk.png_path, "Draw that")->needs(records);
+  command->add_option("--also", arguments->risk.also, "RECORDS REFERENCE of the colour camera, taken into the same report; repeatable")
+      ->type_size(2)
+      ->needs(records);
+  command->add_flag("--calibrate", arguments->risk.is_calibrating, "Fit the tables of the risk to these records")->needs(records);
   command->add_flag("--json", arguments->is_json, "Print JSON");
   command->footer(
       "Example: camloc eval --estimate traj.tum --reference recordings/kitchen --map kitchen.cmap --png result.png\n"

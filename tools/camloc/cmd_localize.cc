@@ -31,6 +31,11 @@ Json pose_json(const Localization& result) {
   return {{"position_m", json_of(result.T_map_camera.translation)}, {"orientation_wxyz", json_of(result.T_map_camera.rotation)}};
 }
 
+Json protection_json(const Protection& protection) {
+  return {{"position_m", {protection.p95.position_m, protection.p999.position_m}},
+          {"rotation_rad", {protection.p95.rotation_rad, protection.p999.rotation_rad}}};
+}
+
 Json latency_json(const Localization& result) {
   Json latency;
   for (int i = 0; i < kNumStages; ++i) {
@@ -47,6 +52,8 @@ Json record_json(const Localization& result) {
           {"pose", pose_json(result)},
           {"covariance", result.has_pose ? json_of(result.covariance) : Json(nullptr)},
           {"quality", result.quality},
+          {"integrity_risk", result.integrity_risk},
+          {"protection", result.has_pose ? protection_json(result.protection) : Json(nullptr)},
           {"tracked", result.is_tracked},
           {"features", result.num_features},
           {"visible", result.evidence.num_visible},
@@ -58,7 +65,9 @@ Json record_json(const Localization& result) {
           {"distinct_inliers", result.evidence.num_distinct_inliers},
           {"margin", result.standing.margin},
           {"lead", std::isfinite(result.standing.lead) ? Json(result.standing.lead) : Json(nullptr)},
+          {"with_depth", result.evidence.num_with_depth},
           {"depth_agreement", result.evidence.depth_agreement},
+          {"map_depth", result.evidence.num_map_depth},
           {"map_depth_agreement", result.evidence.map_depth_agreement},
           {"focal_scale", result.evidence.focal_scale},
           {"reset_counter", result.reset_counter},
