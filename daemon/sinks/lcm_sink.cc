@@ -82,6 +82,12 @@ void fill_pose(const PoseReport& report, pose_t* message) {
   message->reason = static_cast<std::int8_t>(found.reason);
   message->reason_text = to_string(found.reason);
   message->quality = static_cast<std::int8_t>(report.quality);
+  message->integrity_risk = found.has_pose ? found.integrity_risk : 1.0;
+  const Protection protection = found.has_pose ? found.protection : Protection{};
+  message->protection_m[0] = protection.p95.position_m;
+  message->protection_m[1] = protection.p999.position_m;
+  message->protection_rad[0] = protection.p95.rotation_rad;
+  message->protection_rad[1] = protection.p999.rotation_rad;
   message->num_features = clip(found.num_features);
   message->num_matches = clip(found.evidence.num_matches);
   message->num_inliers = clip(found.evidence.num_inliers);

@@ -56,6 +56,11 @@ TEST(FillPoseTest, EveryFieldIsCarriedOver) {
   for (int i = 0; i < 36; ++i) EXPECT_EQ(out.covariance[i], i) << "row-major";
   EXPECT_EQ(out.state, pose_t::LOCALIZED + 0);
   EXPECT_EQ(out.quality, 77);
+  EXPECT_EQ(out.integrity_risk, 0.01);
+  EXPECT_EQ(out.protection_m[0], 0.03);
+  EXPECT_EQ(out.protection_m[1], 0.06);
+  EXPECT_EQ(out.protection_rad[0], 0.02);
+  EXPECT_EQ(out.protection_rad[1], 0.04);
   EXPECT_EQ(out.reason_text, "");
   EXPECT_EQ(out.num_features, 500);
   EXPECT_EQ(out.num_matches, 300);
@@ -82,6 +87,9 @@ TEST(FillPoseTest, WithoutAPoseNothingLooksCertain) {
   lost.has_pose = false;
   const pose_t out = message_of(lost, PoseContext{});
   EXPECT_EQ(out.quality, -1);
+  EXPECT_EQ(out.integrity_risk, 1);
+  EXPECT_GE(out.protection_m[0], 1e3);
+  EXPECT_GE(out.protection_rad[1], 1e3);
   EXPECT_EQ(out.reason_text, to_string(Reason::kFewMatches));
   EXPECT_EQ(out.pos[0], 0);
   EXPECT_EQ(out.orientation[0], 1);
@@ -119,14 +127,14 @@ TEST(LcmSinkTest, BytesOnTheWireAreWhatTheyAlwaysWere) {
   context.reset_offset = 5;
   context.now_epoch_ns = localization.stamp_ns + 7'000'000;
   const pose_t pose = message_of(localization, context);
-  EXPECT_EQ(hash_of(pose), 0x280f347bf410bba9U);
+  EXPECT_EQ(hash_of(pose), 0xca068644f29eaa72U);
   bot_core::pose_t bot_core_pose;
   fill_bot_core(pose, &bot_core_pose);
   EXPECT_EQ(hash_of(bot_core_pose), 0xebaf3fd62c3bff23U);
   localization.state = State::kLost;
   localization.reason = Reason::kFewMatches;
   localization.has_pose = false;
-  EXPECT_EQ(hash_of(message_of(localization, context)), 0x60efeb3e16170b6fU);
+  EXPECT_EQ(hash_of(message_of(localization, context)), 0x23b6854ac7cf99dbU);
 }
 
 TEST(LcmSinkTest, EveryFieldOfTheStatusIsCarriedOver) {

@@ -19,6 +19,8 @@ inline Localization localized() {
   localization.T_map_camera.rotation = exp_so3({0.1, -0.2, 0.3});
   for (int i = 0; i < 36; ++i) localization.covariance(i / 6, i % 6) = i;
   localization.quality = 77;
+  localization.integrity_risk = 0.01;
+  localization.protection = {{0.03, 0.02}, {0.06, 0.04}};
   localization.num_features = 500;
   localization.evidence.num_matches = 300;
   localization.evidence.num_inliers = 200;

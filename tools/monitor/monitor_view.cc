@@ -58,6 +58,8 @@ std::string pose_part(const MonitorState& state) {
     const PoseSigma sigma = pose_sigma(pose);
     screen += text_of("position  %+9.3f %+9.3f %+9.3f m in %s, sigma %.1f cm\n", pose.pos[0], pose.pos[1], pose.pos[2],
                       printable(pose.parent_frame).c_str(), 100 * sigma.position_m);
+    screen += text_of("risk      %.2g that it is off by more than 25 cm or 10 deg; else within %.1f cm, %.2f deg (99.9 %%)\n",
+                      pose.integrity_risk, 100 * pose.protection_m[1], degrees(pose.protection_rad[1]));
     screen += text_of("rotation  %+9.4f %+9.4f %+9.4f %+9.4f (w x y z), sigma %.2f deg\n", pose.orientation[0], pose.orientation[1],
                       pose.orientation[2], pose.orientation[3], degrees(sigma.rotation_rad));
   } else {
@@ -149,6 +151,9 @@ nlohmann::json pose_json(const pose_t& pose) {
                         {"reason", static_cast<int>(pose.reason)},
                         {"reason_text", pose.reason_text},
                         {"quality", static_cast<int>(pose.quality)},
+                        {"integrity_risk", pose.integrity_risk},
+                        {"protection_m", {pose.protection_m[0], pose.protection_m[1]}},
+                        {"protection_rad", {pose.protection_rad[0], pose.protection_rad[1]}},
                         {"num_features", pose.num_features},
                         {"num_matches", pose.num_matches},
                         {"num_inliers", pose.num_inliers},
