@@ -91,16 +91,19 @@ TEST(SharedErrorsTest, ATurnOfTheViewsCountsWithTheDistance) {
   const Scene scene = scene_of(4, 20);
   Scene far = scene;
   for (Eigen::Vector3d& p : far.p_camera) p *= 3;
-  EXPECT_GT(promised(far, 20, {0, 0.005}).topLeftCorner<3, 3>().trace(), 4 * promised(scene, 20, {0, 0.005}).topLeftCorner<3, 3>().trace());
+  const SharedErrors turn{0, 0.005};
+  const double near_m2 = promised(scene, 20, turn).topLeftCorner<3, 3>().trace();
+  const double far_m2 = promised(far, 20, turn).topLeftCorner<3, 3>().trace();
+  EXPECT_GT(far_m2, 4 * near_m2);
 }
 
 TEST(SharedErrorsTest, NothingIsAddedWithoutThemOrWithoutAPose) {
   const Scene scene = scene_of(4, 20);
   EXPECT_TRUE(promised(scene, 20, {}).isZero(0));
   const Correspondences pairs = pairs_of(scene, {}, 20);
-  EXPECT_TRUE(
-      shared_error_covariance(pairs, std::vector<std::uint8_t>(pairs.size(), 0), scene.T_map_camera, {kFocalPx, {}, true, {0.01, 0.01}})
-          .isZero(0));
+  const SharedErrorsModel model{kFocalPx, {}, true, {0.01, 0.01}};
+  const std::vector<std::uint8_t> nobody(pairs.size(), 0);
+  EXPECT_TRUE(shared_error_covariance(pairs, nobody, scene.T_map_camera, model).isZero(0));
 }
 
 }  // namespace

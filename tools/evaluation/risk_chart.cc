@@ -87,7 +87,7 @@ void draw_coverage(ColorImage* canvas, const RiskReport& report) {
       const Eigen::Vector2d top = panel(i + 0.2 + 0.3 * hardest, coverage.*value);
       const auto u = static_cast<int>(top.x()), v = static_cast<int>(top.y());
       draw_rectangle(canvas, u, v, panel.width / 11, panel.v + panel.height - v, hardest != 0 ? kSecond : kMain);
-      draw_text(canvas, u, v - 5, text_of("%.1f", 100 * coverage.*value), kTextPx, kInk);
+      draw_text(canvas, u + 3, std::min(v + 16, panel.v + panel.height - 4), text_of("%.1f", 100 * coverage.*value), kTextPx, kBackground);
     }
     draw_text(canvas, static_cast<int>(panel(i + 0.12, 0).x()), panel.v + panel.height + 20, name, kTextPx, kInk);
   }
