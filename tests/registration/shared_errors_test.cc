@@ -84,7 +84,7 @@ TEST(SharedErrorsTest, MoreLandmarksOfTheSamePartsDoNotAverageItOut) {
 
 TEST(SharedErrorsTest, ALandmarkSeenInFewPartsIsWorthLess) {
   const double whole = promised(scene_of(4, 20), 20, {0.01, 0}).trace(), narrow = promised(scene_of(1, 80), 80, {0.01, 0}).trace();
-  EXPECT_GT(narrow, 4 * whole);
+  EXPECT_GT(narrow, 2 * whole);
 }
 
 TEST(SharedErrorsTest, ATurnOfTheViewsCountsWithTheDistance) {
