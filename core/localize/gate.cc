@@ -2,15 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/localize/gate.h"
 
+#include <algorithm>
+
 namespace camloc {
 
 Gate::Gate(const LocalizerNumbers& numbers, bool has_memory)
-    : numbers_(numbers), has_memory_(has_memory), motion_(numbers), unconfirmed_(numbers) {}
+    : numbers_(numbers), has_memory_(has_memory), motion_(numbers), belief_(numbers) {}
 
 void Gate::reset() {
   motion_.reset();
-  unconfirmed_.reset();
-  ambiguous_ns_.reset();
+  belief_.reset();
   num_last_inliers_ = 0;
 }
 
@@ -28,14 +29,20 @@ std::optional<Gate::Prediction> Gate::predict(std::int64_t stamp_ns, std::int64_
   return Prediction{motion_.predict(stamp_ns), motion_.predict_covariance(stamp_ns)};
 }
 
+bool Gate::withstands(const Candidate& candidate, const Rigid3& T_map_rival, double lead) {
+  if (belief_.challenge(candidate.evidence.T_map_camera, T_map_rival, lead) > 0) return true;
+  reset();
+  return false;
+}
+
 Reason Gate::judge(std::int64_t stamp_ns, const Candidate& candidate) {
   if (candidate.is_continuation) {
     return candidate.reason == Reason::kNone && !fits_motion(stamp_ns, candidate) ? Reason::kImplausibleMotion : candidate.reason;
   }
-  if (candidate.reason == Reason::kAmbiguous) ambiguous_ns_ = stamp_ns;
+  if (candidate.reason == Reason::kAmbiguous) belief_.note_contest(stamp_ns);
   if (candidate.reason != Reason::kNone || candidate.overrides_motion) return candidate.reason;
   if (!fits_motion(stamp_ns, candidate) && !is_confirmed(stamp_ns, candidate)) return Reason::kImplausibleMotion;
-  return was_ambiguous(stamp_ns, candidate) ? Reason::kAmbiguous : Reason::kNone;
+  return is_contested(stamp_ns, candidate) ? Reason::kAmbiguous : Reason::kNone;
 }
 
 // A handful of inliers on a repeated texture can be one tile off, and depth does not tell: such a pose must be where the
@@ -44,24 +51,21 @@ Reason Gate::judge(std::int64_t stamp_ns, const Candidate& candidate) {
 bool Gate::fits_motion(std::int64_t stamp_ns, const Candidate& candidate) const {
   if (!is_recent(stamp_ns, ns(numbers_.lost_memory_s))) return true;
   if (is_thin(candidate) && !is_recent(stamp_ns, ns(numbers_.motion_memory_s))) return false;
-  if (is_thin(candidate)) return motion_.is_expected(stamp_ns, candidate.evidence.T_map_camera, candidate.evidence.covariance);
-  return motion_.is_plausible(stamp_ns, candidate.evidence.T_map_camera);
+  if (!motion_.is_plausible(stamp_ns, candidate.evidence.T_map_camera)) return false;
+  return !is_thin(candidate) || motion_.is_expected(stamp_ns, candidate.evidence.T_map_camera, candidate.evidence.covariance);
 }
 
+// What contradicts the motion must be found again and again; the thinner it is, the longer.
 bool Gate::is_confirmed(std::int64_t stamp_ns, const Candidate& candidate) {
-  if (is_thin(candidate)) return false;
-  const Rigid3& T_map_camera = candidate.evidence.T_map_camera;
-  const bool is_continued = unconfirmed_.has_fix() && stamp_ns - unconfirmed_.last_stamp_ns() <= ns(numbers_.max_confirmation_gap_s) &&
-                            unconfirmed_.is_plausible(stamp_ns, T_map_camera);
-  if (!is_continued) unconfirmed_since_ns_ = stamp_ns;
-  unconfirmed_.add_fix(stamp_ns, T_map_camera, Matrix6d::Zero(), false);
-  return stamp_ns - unconfirmed_since_ns_ >= ns(numbers_.confirmation_s);
+  constexpr double kRounding = 1e-9;
+  const double weight = std::min(1.0, static_cast<double>(candidate.evidence.num_inliers) / numbers_.strong_inliers);
+  return belief_.claim(stamp_ns, candidate.evidence.T_map_camera, weight) >= (1 - kRounding) * belief_.limit();
 }
 
 // Once the motion says little, places that looked alike must stay apart for a while before one of them is believed.
-bool Gate::was_ambiguous(std::int64_t stamp_ns, const Candidate& candidate) const {
+bool Gate::is_contested(std::int64_t stamp_ns, const Candidate& candidate) const {
   if (!is_thin(candidate) || is_recent(stamp_ns, ns(numbers_.max_tracking_gap_s))) return false;
-  return ambiguous_ns_ && stamp_ns - *ambiguous_ns_ <= ns(numbers_.ambiguity_memory_s);
+  return belief_.is_contested(stamp_ns);
 }
 
 bool Gate::is_doubtful(const Candidate& candidate) const {
@@ -73,7 +77,7 @@ double Gate::accept(std::int64_t stamp_ns, const Candidate& candidate) {
   const bool is_jump = !candidate.is_continuation && motion_.has_fix();
   const double jump_m = is_jump ? (pose.T_map_camera.translation - motion_.predict(stamp_ns).translation).norm() : 0;
   motion_.add_fix(stamp_ns, pose.T_map_camera, pose.covariance, candidate.is_continuation);
-  unconfirmed_.reset();
+  belief_.forget_claims();
   num_last_inliers_ = pose.num_inliers;
   return jump_m;
 }

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Is a verified pose believed, given what came before? The only thing in the localizer that remembers: the last pose and its motion,
-// a pose that contradicts them and is found again and again, when the camera was last lost, and when two places looked alike.
+// Is a verified pose believed, given what came before? The only thing in the localizer that remembers: the last pose and its motion
+// (motion_model.h), and what speaks for other places (place_belief.h).
 #pragma once
 
 #include <cstdint>
@@ -11,6 +11,7 @@
 #include "core/localize/localization.h"
 #include "core/localize/localizer_numbers.h"
 #include "core/localize/motion_model.h"
+#include "core/localize/place_belief.h"
 #include "core/registration/rivals.h"
 
 namespace camloc {
@@ -44,6 +45,9 @@ class Gate {
   /// The same for as long as the caller wants.
   [[nodiscard]] std::optional<Prediction> predict(std::int64_t stamp_ns, std::int64_t max_age_ns) const;
 
+  /// A tracked pose was held against one of its look-alikes. False: the look-alike has gained on it for so long that neither is
+  /// believed, and the motion is forgotten.
+  [[nodiscard]] bool withstands(const Candidate& candidate, const Rigid3& T_map_rival, double lead);
   /// What becomes of the candidate's reason. Takes notice of places that look alike.
   [[nodiscard]] Reason judge(std::int64_t stamp_ns, const Candidate& candidate);
   /// Believed, but the next proposer is asked as well: a tracked pose on thin evidence that has lost most of what the last one had. A
@@ -58,15 +62,13 @@ class Gate {
   [[nodiscard]] bool is_recent(std::int64_t stamp_ns, std::int64_t max_age_ns) const;
   [[nodiscard]] bool fits_motion(std::int64_t stamp_ns, const Candidate& candidate) const;
   [[nodiscard]] bool is_confirmed(std::int64_t stamp_ns, const Candidate& candidate);
-  [[nodiscard]] bool was_ambiguous(std::int64_t stamp_ns, const Candidate& candidate) const;
+  [[nodiscard]] bool is_contested(std::int64_t stamp_ns, const Candidate& candidate) const;
 
   LocalizerNumbers numbers_;
   bool has_memory_;
   MotionModel motion_;
-  MotionModel unconfirmed_;                   ///< the last fix that contradicts the motion so far
-  std::int64_t unconfirmed_since_ns_ = 0;     ///< when fixes that agree with it began
-  std::uint32_t num_last_inliers_ = 0;        ///< of the last pose
-  std::optional<std::int64_t> ambiguous_ns_;  ///< when another place last explained a frame nearly as well
+  PlaceBelief belief_;
+  std::uint32_t num_last_inliers_ = 0;  ///< of the last pose
 };
 
 }  // namespace camloc

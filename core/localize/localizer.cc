@@ -19,6 +19,10 @@ namespace {
 constexpr int kMaxCandidates = 8000;
 /// Sampling is seeded by the frame and the place: seeds of neighbouring frames do not meet.
 constexpr std::uint64_t kSeedsPerFrame = 8;
+/// A tracked place is held against a look-alike once in so many frames: places change slowly.
+constexpr std::size_t kFramesPerRival = 3;
+/// Between the samplings of two values of LocalizerNumbers::seed: more frames than there will ever be.
+constexpr std::uint64_t kSeedStride = 0x9E3779B97F4A7C15ULL;
 /// A rival that was found this close to where the map names one was asked already.
 constexpr RivalDistance kSamePlace{.position_m = 0.5, .rotation_rad = 0.35};
 
@@ -35,8 +39,8 @@ Matrix6d coarse_uncertainty() {
   return variance.asDiagonal();
 }
 
-/// Cubes of 4 m that a room has with what is seen through its door.
-constexpr double kCubesOfRoom = 8;
+/// Cubes of 4 m that a small room has.
+constexpr double kCubesOfRoom = 4;
 
 /// Levels of image and map must be the same ones: the map rules. A pose that is the best of many places is right by more inliers only.
 LocalizerOptions fitted_to(const MapView& map, LocalizerOptions options) {
@@ -129,6 +133,7 @@ void Localizer::hint(const PoseHint& hint) {
 void Localizer::reset() {
   gate_.reset();
   parallax_.reset();
+  rival_turn_ = 0;
 }
 
 void Localizer::begin(const Frame& frame) {
@@ -157,7 +162,7 @@ Candidate Localizer::examine(const Frame& frame, std::span<const Proposal> propo
   if (proposals.empty()) return {.reason = Reason::kNoCandidates};
   proposals = proposals.first(std::min(proposals.size(), static_cast<std::size_t>(std::max(1, options_.numbers.max_places))));
   found_.clear();
-  const std::uint64_t seed = frame.sequence * kSeedsPerFrame;
+  const std::uint64_t seed = frame.sequence * kSeedsPerFrame + options_.numbers.seed * kSeedStride;
   for (std::size_t i = 0; i < proposals.size(); ++i) solve(proposals[i], seed + i);
   Candidate best{.is_continuation = proposals.front().is_continuation, .overrides_motion = proposals.front().overrides_motion};
   // A rival that explains more has rivals of its own.
@@ -167,10 +172,10 @@ Candidate Localizer::examine(const Frame& frame, std::span<const Proposal> propo
     if (best_of_found() == before) break;
   }
   const Hypothesis& found = found_[best_of_found()];
-  const RivalDistance apart{options_.numbers.rival_distance_m, options_.numbers.rival_angle_rad};
   best.evidence = found;
-  best.standing = {margin_of(found_, found, apart), lead_of(found_, found, apart)};
+  best.standing = {margin_of(found_, found, apart()), lead_of(found_, found, apart())};
   best.reason = verify(best.evidence, best.standing, best.is_continuation, options_.numbers);
+  if (best.is_continuation && best.reason == Reason::kNone && !withstands_a_rival(&best, seed)) best.reason = Reason::kAmbiguous;
   timer_.finish(Stage::kVerify);
   return best;
 }
@@ -217,6 +222,23 @@ bool Localizer::is_shown_no_picture(std::int64_t stamp_ns, const Candidate& cand
                           levels_.sigma_px(view_.features.keypoints[inlier.feature].level) * pixel});
   }
   return parallax_.add(stamp_ns, sightings_);
+}
+
+// One look-alike every few frames: where there are several each has its turn, and where there are none nothing is spent.
+bool Localizer::withstands_a_rival(Candidate* candidate, std::uint64_t seed) {
+  const std::size_t turn = rival_turn_++;
+  if (turn % kFramesPerRival != 0) return true;
+  const auto rivals = rivals_.of(candidate->evidence.T_map_camera);
+  if (rivals.empty()) return true;
+  const Rigid3 T_map_rival = rivals[turn / kFramesPerRival % rivals.size()];
+  const Hypothesis found = found_[best_of_found()];
+  found_.clear();
+  const auto matches = solver_.search_by_projection(&landmarks_, T_map_rival, static_cast<float>(options_.numbers.rival_radius_px));
+  keep(solver_.solve_and_refine(&landmarks_, matches, seed));
+  found_.back().is_look_alike = true;
+  const double lead = lead_of(found_, found, apart());
+  if (std::isfinite(lead)) candidate->standing.lead = lead;
+  return gate_.withstands(*candidate, T_map_rival, lead);
 }
 
 void Localizer::solve(const Proposal& proposal, std::uint64_t seed) {

@@ -61,6 +61,8 @@ class Localizer {
   void gather_candidates(const Proposal& place);
   void keep(const PoseEvidence& found);
   void ask_rivals(Hypothesis* best, std::uint64_t seed);
+  [[nodiscard]] bool withstands_a_rival(Candidate* candidate, std::uint64_t seed);
+  [[nodiscard]] RivalDistance apart() const { return {options_.numbers.rival_distance_m, options_.numbers.rival_angle_rad}; }
   [[nodiscard]] std::size_t best_of_found() const;
   [[nodiscard]] bool is_shown_no_picture(std::int64_t stamp_ns, const Candidate& candidate);
   void watch_calibration(const PoseEvidence& evidence);
@@ -85,6 +87,7 @@ class Localizer {
   std::vector<std::uint32_t> list_;               ///< landmarks of one keyframe
   std::vector<std::uint32_t> visit_of_landmark_;  ///< the visit_ at which a landmark became a candidate
   std::uint32_t visit_ = 0;
+  std::size_t rival_turn_ = 0;  ///< of tracked frames: which look-alike is asked next
   Gate gate_;
   MotionParallax parallax_;
   std::vector<LandmarkObservation> inliers_;  ///< of the pose at hand, for parallax_

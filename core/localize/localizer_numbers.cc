@@ -18,6 +18,7 @@ constexpr NumberEntry<N> kTable[] = {
     {"max_range_m", "m", &N::max_range_m, "of landmarks that are looked for"},
     {"view_angle_margin_rad", "rad", &N::view_angle_margin_rad, "beyond the widest angle a landmark was mapped from"},
     {"ransac_iterations", "samples", &N::ransac_iterations, "of P3P, always all: 0.25 ms with 200 pairs"},
+    {"seed", "count", &N::seed, "of the sampling, mixed with the frame's number: another one must make no difference"},
     {"max_ransac_pairs", "pairs", &N::max_ransac_pairs, "best matches by descriptor; worth more than any iteration count (kitchen)"},
     {"max_error_px", "px", &N::max_error_px, "reprojection error of an inlier"},
     {"guided_radius_px", "px", &N::guided_radius_px, "search window of the guided refinement"},
@@ -32,7 +33,17 @@ constexpr NumberEntry<N> kTable[] = {
     {"min_inliers_no_depth", "inliers", &N::min_inliers_no_depth, "of a global fix where depth says nothing"},
     {"inliers_per_doubling", "inliers", &N::inliers_per_doubling,
      "more of a global fix for each doubling of the map beyond a room: the more places there are, the more inliers one of them has by "
-     "chance (building, 209 cubes: wrong ones have up to 52, of the right ones 0.3 % have fewer than 60; kitchen: right ones from 20)"},
+     "chance (building, 209 cubes: mirrored frames have up to 70, of the right ones 0.7 % have fewer than 100; another building: 97, "
+     "though "
+     "on a plane; kitchen: right ones from 20)"},
+    {"flat_thickness_m", "m", &N::flat_thickness_m, "standard deviation about their plane of inliers that are called flat"},
+    {"flat_inliers_factor", "factor", &N::flat_inliers_factor,
+     "times as many of a global fix on flat evidence: a panel or a tiled wall is alike in its mirror image and in many places (of 49 "
+     "mirrored frames that passed as places of four simulated maps, 26 were flat)"},
+    {"flat_found_share", "share", &N::flat_found_share, "unless so many of the landmarks that should be seen are"},
+    {"min_found_share", "share", &N::min_found_share,
+     "of the landmarks that should be seen and are nowhere else; of a global fix (kitchen: mirrored frames up to 0.012, right ones from "
+     "0.016 on)"},
     {"min_tracked_inliers", "inliers", &N::min_tracked_inliers, "where the pose was predicted"},
     {"min_coarse_inliers", "inliers", &N::min_coarse_inliers, "a pose with fewer is not even a coarse place"},
     {"strong_inliers", "inliers", &N::strong_inliers,
@@ -45,6 +56,10 @@ constexpr NumberEntry<N> kTable[] = {
     {"min_lead", "sigmas", &N::min_lead,
      "by which the features that only a global fix explains outnumber those that only a rival explains (building, other day: wrong ones "
      "lead by up to 5.3; from 6 on 72 % of single frames are fixed)"},
+    {"max_wrong_place_risk", "probability", &N::max_wrong_place_risk,
+     "at which a place is believed; a lead of min_lead in one view, or a claim that stands for confirmation_s, is worth it"},
+    {"new_view_distance_m", "m", &N::new_view_distance_m, "moved by so much the camera has another view, which is evidence of its own"},
+    {"new_view_angle_rad", "rad", &N::new_view_angle_rad, "or turned by so much"},
     {"min_depth_samples", "inliers", &N::min_depth_samples, "with depth; fewer say nothing"},
     {"min_depth_agreement", "share", &N::min_depth_agreement, "of the inliers with depth"},
     {"min_depth_agreement_thin", "share", &N::min_depth_agreement_thin, "the same of a thin pose"},

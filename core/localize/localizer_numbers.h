@@ -24,6 +24,7 @@ struct LocalizerNumbers {
   double max_range_m = 8.0;
   double view_angle_margin_rad = 0.5;
   int ransac_iterations = 600;
+  std::uint32_t seed = 0;
   int max_ransac_pairs = 300;
   double max_error_px = 5.0;
   float guided_radius_px = 12.0F;
@@ -36,7 +37,11 @@ struct LocalizerNumbers {
   std::uint32_t min_features = 40;
   std::uint32_t min_inliers = 20;
   std::uint32_t min_inliers_no_depth = 40;
-  double inliers_per_doubling = 8.0;
+  double inliers_per_doubling = 9.0;
+  double flat_thickness_m = 0.025;
+  double flat_inliers_factor = 2.0;
+  double flat_found_share = 0.1;
+  double min_found_share = 0.015;
   std::uint32_t min_tracked_inliers = 15;
   std::uint32_t min_coarse_inliers = 15;
   std::uint32_t strong_inliers = 60;
@@ -44,6 +49,9 @@ struct LocalizerNumbers {
   double min_spread = 0.1;
   double min_margin = 0.4;
   double min_lead = 6.0;
+  double max_wrong_place_risk = 0.001;
+  double new_view_distance_m = 0.5;
+  double new_view_angle_rad = 0.35;
   std::uint32_t min_depth_samples = 12;
   double min_depth_agreement = 0.4;
   double min_depth_agreement_thin = 0.6;

@@ -12,6 +12,10 @@
 
 namespace camloc {
 
+/// Could the camera have gone from one pose to the other in that time?
+[[nodiscard]] bool is_within_reach(const LocalizerNumbers& numbers, std::int64_t elapsed_ns, const Rigid3& T_map_from,
+                                   const Rigid3& T_map_to);
+
 class MotionModel {
  public:
   explicit MotionModel(const LocalizerNumbers& numbers) : numbers_(numbers) {}
@@ -33,6 +37,8 @@ class MotionModel {
   [[nodiscard]] bool is_plausible(std::int64_t stamp_ns, const Rigid3& T_map_camera) const;
 
  private:
+  [[nodiscard]] double fading(std::int64_t stamp_ns) const;
+
   LocalizerNumbers numbers_;
   bool has_fix_ = false;
   bool has_velocity_ = false;

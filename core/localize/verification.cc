@@ -17,6 +17,15 @@ bool contradicts_depth(const PoseEvidence& evidence, const LocalizerNumbers& num
          (evidence.num_map_depth >= numbers.min_map_depth_samples && evidence.map_depth_agreement < min_map_agrees);
 }
 
+/// Of the landmarks that should be seen too few are, or they are all on one plane, and not many: what is in the image may be something
+/// like it that is not in the map at all. A mirrored room keeps what is symmetric of it.
+bool is_something_else(const PoseEvidence& evidence, std::uint32_t min_inliers, const LocalizerNumbers& numbers) {
+  const double found = evidence.found_share();
+  if (found < numbers.min_found_share) return true;
+  const bool is_flat = evidence.thickness_m < numbers.flat_thickness_m && found < numbers.flat_found_share;
+  return is_flat && evidence.num_inliers < numbers.flat_inliers_factor * min_inliers;
+}
+
 }  // namespace
 
 Reason verify(const PoseEvidence& evidence, const Standing& standing, bool is_tracked, const LocalizerNumbers& numbers) {
@@ -29,6 +38,7 @@ Reason verify(const PoseEvidence& evidence, const Standing& standing, bool is_tr
   if (!evidence.is_found) return Reason::kFewInliers;
   if (is_calibration_mismatch(evidence, numbers)) return Reason::kCalibrationMismatch;
   if (evidence.num_inliers < min_inliers) return Reason::kFewInliers;
+  if (!is_tracked && is_something_else(evidence, min_inliers, numbers)) return Reason::kFewInliers;
   if (evidence.inlier_ratio() < numbers.min_inlier_ratio) return Reason::kLowInlierRatio;
   if (evidence.spread < numbers.min_spread) return Reason::kPoorSpread;
   if (standing.margin < numbers.min_margin || standing.lead < numbers.min_lead) return Reason::kAmbiguous;

@@ -20,6 +20,7 @@ struct PoseEvidence {
   std::uint32_t num_inliers = 0;
   std::uint32_t num_distinct_visible = 0, num_distinct_inliers = 0;  ///< the same without landmarks that have twins elsewhere
   double spread = 0;                                                 ///< share of the image's 8 x 6 cells that hold an inlier
+  double thickness_m = 1;  ///< standard deviation of the inliers' landmarks about the plane that fits them best
   std::uint32_t num_with_depth = 0;
   double depth_agreement = 1;       ///< share of inliers with depth whose depth agrees
   std::uint32_t num_map_depth = 0;  ///< landmarks in view whose pixel has a measured depth and that nothing hides
@@ -29,6 +30,10 @@ struct PoseEvidence {
   double focal_scale_sigma = 1;
   bool has_focal_scale = false;
 
+  /// Of the landmarks that should be seen and are nowhere else, how many are; 1 where that is not known.
+  [[nodiscard]] double found_share() const {
+    return num_distinct_visible == 0 ? 1.0 : static_cast<double>(num_distinct_inliers) / num_distinct_visible;
+  }
   [[nodiscard]] double inlier_ratio() const { return num_matches == 0 ? 0.0 : static_cast<double>(num_inliers) / num_matches; }
 };
 

@@ -5,6 +5,7 @@
 // what the inliers say. The measurements behind that are below, one function each.
 #include "core/registration/pose_solver.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -107,6 +108,7 @@ PoseEvidence PoseSolver::refine(LandmarkSource* landmarks, const Rigid3& T_map_c
       evidence.shared_covariance = shared_error_covariance(
           pairs_, inlier_mask_, refined.T_map_camera, {focal_px_, refinement_.depth_noise, options_.use_depth, options_.shared_errors});
       count_distinct(*landmarks, &evidence);
+      evidence.thickness_m = thickness_m();
       measure_focal_scale(&evidence);
       measure_map_depth(*landmarks, visible_, &evidence);
     }
@@ -199,6 +201,26 @@ void PoseSolver::count_distinct(const LandmarkSource& landmarks, PoseEvidence* e
   for (const ProjectedLandmark& landmark : visible_) evidence->num_distinct_visible += landmarks.is_repeated(landmark.landmark) ? 0 : 1;
   for (std::size_t i = 0; i < pairs_.size(); ++i)
     evidence->num_distinct_inliers += inlier_mask_[i] != 0 && !landmarks.is_repeated(pairs_.landmark[i]) ? 1 : 0;
+}
+
+double PoseSolver::thickness_m() const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d sum_of_squares = Eigen::Matrix3d::Zero();
+  int num_inliers = 0;
+  // About one of them: landmarks are far from the map's origin, and squares of that cancel badly.
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    if (inlier_mask_[i] == 0) continue;
+    const Eigen::Vector3d p_map(pairs_.X[i], pairs_.Y[i], pairs_.Z[i]);
+    if (num_inliers++ == 0) origin = p_map;
+    sum += p_map - origin;
+    sum_of_squares += (p_map - origin) * (p_map - origin).transpose();
+  }
+  if (num_inliers == 0) return 0;
+  const Eigen::Vector3d mean = sum / num_inliers;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
+  eigen.computeDirect(sum_of_squares / num_inliers - mean * mean.transpose(), Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, eigen.eigenvalues()[0]));
 }
 
 void PoseSolver::measure_focal_scale(PoseEvidence* evidence) {

@@ -89,6 +89,7 @@ class PoseSolver {
   void summarize(const PoseRefinementResult& refined, PoseEvidence* evidence);
   [[nodiscard]] double inliers_per_patch();
   void count_distinct(const LandmarkSource& landmarks, PoseEvidence* evidence) const;
+  [[nodiscard]] double thickness_m() const;
   void measure_focal_scale(PoseEvidence* evidence);
   void measure_map_depth(const LandmarkPositions& landmarks, std::span<const ProjectedLandmark> visible, PoseEvidence* evidence) const;
   [[nodiscard]] const Keypoint& keypoint_of_pair(std::size_t i) const {

@@ -71,6 +71,44 @@ TEST(Gate, StrongEvidenceElsewhereIsBelievedWhenItStays) {
     EXPECT_EQ(interrupted.judge(i * kSecond / 30, at(i % 2 == 0 ? 40 : 80, 100)), Reason::kImplausibleMotion);
 }
 
+TEST(Gate, ThinEvidenceElsewhereIsBelievedWhenItStaysForLonger) {
+  Gate gate = gate_at_origin();
+  for (std::int64_t i = 1; i <= 70; ++i) {
+    const bool is_long_enough = i - 1 >= 60;
+    EXPECT_EQ(gate.judge(2 * kSecond + i * kSecond / 30, at(40, 30)), is_long_enough ? Reason::kNone : Reason::kImplausibleMotion) << i;
+  }
+}
+
+// A recording with a piece left out: after the gap the velocity of before says nothing, and thin evidence may be wherever a camera can
+// have gone meanwhile.
+TEST(Gate, ThinEvidenceAfterAGapIsBelievedWhereACameraCanBe) {
+  Gate gate = gate_at_origin();
+  gate.accept(kSecond / 30, at(0.01, 100, true));
+  EXPECT_EQ(gate.judge(2 * kSecond / 30, at(0.4, 25)), Reason::kImplausibleMotion) << "no gap";
+  EXPECT_EQ(gate.judge(kSecond / 2, at(1.2, 25)), Reason::kNone);
+  EXPECT_EQ(gate.judge(kSecond / 2, at(2.5, 25)), Reason::kImplausibleMotion) << "nobody runs like that";
+}
+
+TEST(Gate, ATrackedPoseThatARivalOvertakesIsGivenUp) {
+  Gate gate = gate_at_origin();
+  for (int i = 1; i <= 40; ++i) {
+    Rigid3 T_map_rival;
+    T_map_rival.translation.x() = 0.1 * i + 20;
+    EXPECT_TRUE(gate.withstands(at(0.1 * i, 100, true), T_map_rival, i % 2 == 0 ? 5 : 1));
+    gate.accept(i * kSecond / 10, at(0.1 * i, 100, true));
+  }
+  int num_withstood = 0;
+  for (int i = 41; i <= 80; ++i, ++num_withstood) {
+    Rigid3 T_map_rival;
+    T_map_rival.translation.x() = 0.1 * i + 20;
+    if (!gate.withstands(at(0.1 * i, 100, true), T_map_rival, -9)) break;
+    gate.accept(i * kSecond / 10, at(0.1 * i, 100, true));
+  }
+  EXPECT_GT(num_withstood, 5) << "not at once";
+  EXPECT_LT(num_withstood, 15);
+  EXPECT_FALSE(gate.predict(9 * kSecond, 100 * kSecond)) << "the motion is forgotten";
+}
+
 TEST(Gate, WhoKnowsBetterMayContradictTheMotion) {
   Gate gate = gate_at_origin();
   Candidate hinted = at(40, 100);

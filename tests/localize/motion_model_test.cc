@@ -129,6 +129,22 @@ TEST(MotionModel, ExpectedIsWhereThePredictionSays) {
   }
 }
 
+TEST(MotionModel, AVelocityOfLongAgoNarrowsNothing) {
+  const LocalizerNumbers options;
+  MotionModel model{options};
+  model.add_fix(0, kStart, Matrix6d::Zero(), true);
+  model.add_fix(kStepNs, after_steps(kStart, 1), Matrix6d::Zero(), true);
+  const auto gap_ns = static_cast<std::int64_t>(1e9 * options.max_velocity_age_s);
+  const std::int64_t stamp_ns = kStepNs + gap_ns;
+  const double reach_m = options.expected_sigmas * options.speed_change_m_per_s * options.max_velocity_age_s;
+  const Rigid3 T = model.predict(stamp_ns);
+  const auto is_expected = [&](double moved_m) {
+    return model.is_expected(stamp_ns, {T.rotation, T.translation + Eigen::Vector3d(0, moved_m, 0)}, Matrix6d::Zero());
+  };
+  EXPECT_TRUE(is_expected(2.9 * reach_m)) << "as without a velocity";
+  EXPECT_FALSE(is_expected(3.1 * reach_m));
+}
+
 TEST(MotionModel, ResetForgetsAllButTheOptions) {
   LocalizerNumbers options;
   options.max_speed_m_per_s = 100;

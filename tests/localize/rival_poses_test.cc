@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/map/map_unpack.h"
 #include "tests/localize/sample_world.h"
 
@@ -77,6 +79,25 @@ TEST(RivalPoses, IdenticalRoomsAreAmbiguousEvenIfOnlyOneIsProposed) {
     EXPECT_EQ(result.state, State::kCoarse) << i;
     EXPECT_EQ(result.reason, Reason::kAmbiguous) << i;
   }
+}
+
+TEST(RivalPoses, ATrackedPlaceIsHeldAgainstItsLookAlike) {
+  const SampleWorld& world = SampleWorld::get();
+  double middle_y = 0;
+  for (const MapLandmark& landmark : world.data().landmarks) middle_y += landmark.position_m.y();
+  middle_y /= static_cast<double>(world.data().landmarks.size());
+  const testing::MapOnDisk rooms(two_rooms(true, middle_y));
+  Localizer localizer(*rooms.view, world.camera(), {});
+  int num_tracked = 0, num_asked = 0;
+  for (std::uint64_t i = 0; i < testing::kMappedFrames; ++i) {
+    const Localization& result = localizer.process(world.frame(i).view());
+    if (result.state != State::kLocalized) continue;
+    EXPECT_LT(result.T_map_camera.translation.x(), kFarM / 2) << "frame " << i << " is in the copy";
+    num_tracked += result.is_tracked ? 1 : 0;
+    num_asked += result.is_tracked && std::isfinite(result.standing.lead) ? 1 : 0;
+  }
+  EXPECT_GT(num_tracked, 60);
+  EXPECT_GT(num_asked, num_tracked / 4);
 }
 
 TEST(RivalPoses, WhatOnlyOneRoomHasDecides) {

@@ -113,6 +113,36 @@ TEST(Verification, EveryFigureHasItsReason) {
   }
 }
 
+TEST(Verification, LandmarksThatShouldBeSeenAndAreNotSpeakAgainstAGlobalFix) {
+  const auto with = [](std::uint32_t num_found, bool is_tracked) {
+    return verdict([=](Figures* f) {
+      f->evidence.num_distinct_visible = 2000;
+      f->evidence.num_distinct_inliers = num_found;
+      f->is_tracked = is_tracked;
+    });
+  };
+  EXPECT_EQ(with(31, false), Reason::kNone);
+  EXPECT_EQ(with(29, false), Reason::kFewInliers);
+  EXPECT_EQ(with(29, true), Reason::kNone) << "where it is was known before";
+}
+
+TEST(Verification, FlatEvidenceMustBeTwiceAsMuchOrComplete) {
+  const LocalizerNumbers o;
+  const auto with = [](std::uint32_t num_inliers, double thickness_m, double found_share) {
+    return verdict([=](Figures* f) {
+      f->evidence.num_inliers = num_inliers;
+      f->evidence.num_matches = num_inliers + 5;
+      f->evidence.thickness_m = thickness_m;
+      f->evidence.num_distinct_visible = 1000;
+      f->evidence.num_distinct_inliers = static_cast<std::uint32_t>(1000 * found_share);
+    });
+  };
+  EXPECT_EQ(with(2 * o.min_inliers - 1, 0.01, 0.05), Reason::kFewInliers);
+  EXPECT_EQ(with(2 * o.min_inliers, 0.01, 0.05), Reason::kNone);
+  EXPECT_EQ(with(2 * o.min_inliers - 1, 0.03, 0.05), Reason::kNone) << "not flat";
+  EXPECT_EQ(with(2 * o.min_inliers - 1, 0.01, 0.11), Reason::kNone) << "all that should be seen is";
+}
+
 TEST(Verification, ThinEvidenceNeedsDepthToConfirmIt) {
   const LocalizerNumbers o;
   const auto with = [&](std::uint32_t num_inliers, double inliers_agree, double map_agrees) {

@@ -134,6 +134,15 @@ TEST_F(PoseSolverTest, MapDepthTellsHiddenFromSeenThrough) {
   EXPECT_LT(seen_through.map_depth_agreement, 0.75);
 }
 
+TEST_F(PoseSolverTest, MeasuresHowFlatTheEvidenceIs) {
+  observe(world_.frame(kIndex));
+  const PoseEvidence room = look_from_truth();
+  ASSERT_TRUE(room.is_found);
+  EXPECT_GT(room.thickness_m, 0.05) << "walls that meet";
+  EXPECT_GT(room.found_share(), 0.2);
+  EXPECT_EQ(PoseEvidence{}.found_share(), 1) << "nothing is known";
+}
+
 TEST_F(PoseSolverTest, MeasuresTheFocalLength) {
   for (const double factor : {0.93, 1.08}) {
     RgbdCamera camera = world_.camera();
