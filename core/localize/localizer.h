@@ -90,8 +90,8 @@ class Localizer {
   std::size_t rival_turn_ = 0;  ///< of tracked frames: which look-alike is asked next
   Gate gate_;
   MotionParallax parallax_;
-  std::vector<LandmarkObservation> inliers_;  ///< of the pose at hand, for parallax_
-  std::vector<LandmarkSighting> sightings_;   ///< the same
+  std::vector<LandmarkObservation> inliers_;       ///< of the pose at hand, for parallax_
+  std::vector<LandmarkSighting> sightings_;        ///< the same
   Matrix6d shared_covariance_ = Matrix6d::Zero();  ///< of the last pose; the gate weighs poses without it
   CalibrationMonitor calibration_;
   RiskFeatures last_risk_features_{};  ///< of the last pose, while it is predicted from
