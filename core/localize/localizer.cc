@@ -218,10 +218,10 @@ bool Localizer::is_shown_no_picture(std::int64_t stamp_ns, const Candidate& cand
   const double pixel = 1 / camera_.color.mean_focal_px();
   for (const LandmarkObservation& inlier : inliers_) {
     const Eigen::Vector3d p = T_camera_map * landmarks_.position_m(static_cast<std::int32_t>(inlier.landmark)).cast<double>();
-    sightings_.push_back({inlier.landmark, view_.normalized[inlier.feature].cast<double>(), p.head<2>() / p.z(),
+    sightings_.push_back({inlier.landmark, view_.normalized[inlier.feature].cast<double>(), p.z(),
                           levels_.sigma_px(view_.features.keypoints[inlier.feature].level) * pixel});
   }
-  return parallax_.add(stamp_ns, sightings_);
+  return parallax_.add(stamp_ns, again.T_map_camera, sightings_);
 }
 
 // One look-alike every few frames: where there are several each has its turn, and where there are none nothing is spent.

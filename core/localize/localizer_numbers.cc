@@ -74,7 +74,7 @@ constexpr NumberEntry<N> kTable[] = {
     {"min_parallax_landmarks", "landmarks", &N::min_parallax_landmarks,
      "that two frames without depth share, to tell a place from a picture"},
     {"min_parallax_evidence", "nats", &N::min_parallax_evidence,
-     "by which two poses must be likelier than a plane that moves, before a pose without depth is believed"},
+     "by which a place must be likelier than a picture that moves as a plane, before a pose without depth is believed"},
     {"max_speed_m_per_s", "m/s", &N::max_speed_m_per_s, "faster is implausible for a head or a robot indoors"},
     {"max_turn_rad_per_s", "rad/s", &N::max_turn_rad_per_s, "the same"},
     {"speed_change_m_per_s", "m/s", &N::speed_change_m_per_s,

@@ -63,7 +63,7 @@ struct LocalizerNumbers {
   double max_position_sigma_m = 0.15;
   double max_rotation_sigma_rad = 0.06;
   std::uint32_t min_parallax_landmarks = 30;
-  double min_parallax_evidence = 30.0;
+  double min_parallax_evidence = 15.0;
   // Motion and memory.
   double max_speed_m_per_s = 3.0;
   double max_turn_rad_per_s = 7.0;

@@ -16,19 +16,20 @@
 
 namespace camloc {
 
-/// A landmark where a pose says that it is, and where the image has it.
+/// A landmark where the image has it.
 struct LandmarkSighting {
   std::uint32_t landmark = 0;
-  Eigen::Vector2d seen = Eigen::Vector2d::Zero();      ///< undistorted image coordinates x/z, y/z
-  Eigen::Vector2d expected = Eigen::Vector2d::Zero();  ///< the same, of the landmark from the pose
-  double sigma = 0;                                    ///< of `seen`, each axis, the same unit
+  Eigen::Vector2d seen = Eigen::Vector2d::Zero();  ///< undistorted image coordinates x/z, y/z
+  double depth_m = 0;                              ///< along the optical axis, from the pose: what the map says
+  double sigma = 0;                                ///< of `seen`, each axis, the same unit
 };
 
 struct MotionParallaxOptions {
-  std::size_t max_sightings = 1000;         ///< of a frame; further ones are left out
-  std::size_t min_shared = 30;              ///< landmarks that two frames must share
-  std::int64_t max_age_ns = 5'000'000'000;  ///< an earlier frame is compared with no longer: a slide show is no motion
-  double min_evidence = 30.0;               ///< how much likelier the poses must be than a plane, as the logarithm of the ratio
+  std::size_t max_sightings = 1000;  ///< of a frame; further ones are left out
+  std::size_t min_shared = 30;       ///< landmarks that two frames must share
+  /// An earlier frame is compared with no longer: a slide show is no motion.
+  std::int64_t max_age_ns = 5'000'000'000;
+  double min_evidence = 15.0;  ///< how much likelier a place must be than a picture, as the logarithm of the ratio
 };
 
 /// Compares each frame with an earlier one. Not thread-safe; allocates at construction only; the same input gives the same bits.
@@ -38,11 +39,11 @@ class MotionParallax {
 
   /// Nothing is known.
   void reset();
-  /// The sightings of the next frame in which a pose was found; those at one landmark are taken once. They are reordered.
-  /// Whether this one and an earlier frame show together that what is seen is no plane.
-  [[nodiscard]] bool add(std::int64_t stamp_ns, std::span<LandmarkSighting> sightings);
-  /// Of the last add(): the logarithm of how much likelier the poses are than a plane; 0 where too few landmarks are shared.
-  [[nodiscard]] double evidence() const { return evidence_; }
+  /// The next frame in which a pose was found; of several sightings of one landmark one is taken, and they are reordered.
+  /// Whether the frames so far show that what is seen is no picture.
+  [[nodiscard]] bool add(std::int64_t stamp_ns, const Rigid3& T_map_camera, std::span<LandmarkSighting> sightings);
+  /// The logarithm of how much likelier a place is than a picture, by all frames since the last reset().
+  [[nodiscard]] double evidence() const { return earlier_evidence_ + evidence_; }
 
  private:
   struct Pair {
@@ -50,13 +51,16 @@ class MotionParallax {
     const LandmarkSighting* now;
   };
   void find_shared(std::span<const LandmarkSighting> sightings);
-  void start_from(std::int64_t stamp_ns, std::span<const LandmarkSighting> sightings);
+  void start_from(std::int64_t stamp_ns, const Rigid3& T_map_camera, std::span<const LandmarkSighting> sightings);
+  [[nodiscard]] double compare(const Rigid3& T_before_now) const;
 
   MotionParallaxOptions options_;
   std::vector<LandmarkSighting> reference_;  ///< by landmark, each once
   std::int64_t reference_ns_ = 0;
+  Rigid3 T_map_reference_;
   std::vector<Pair> shared_;
-  double evidence_ = 0;
+  double evidence_ = 0;          ///< of the last frame against the reference
+  double earlier_evidence_ = 0;  ///< of those before it, each against the last frame that shared enough with it
 };
 
 }  // namespace camloc

@@ -37,18 +37,23 @@ Eigen::Vector2d projected(const Rigid3& T_map_camera, const Eigen::Vector3d& p_m
   return p.head<2>() / p.z();
 }
 
+struct Frame {
+  Rigid3 T_map_camera;
+  std::vector<LandmarkSighting> sightings;
+};
+
 class View {
  public:
   explicit View(bool is_flat = false) : points_(points_before(is_flat)) {}
 
   /// The room from there.
-  std::vector<LandmarkSighting> of_room(double x_m) {
+  Frame of_room(double x_m) {
     std::vector<Eigen::Vector2d> seen;
     for (const Eigen::Vector3d& p : points_) seen.push_back(projected(camera_at(x_m), p));
     return sightings(seen, camera_at(x_m));
   }
   /// A photograph of it that was taken at the origin and hangs 2 m away, filling the image as the room would.
-  std::vector<LandmarkSighting> of_photograph(double x_m) {
+  Frame of_photograph(double x_m) {
     std::vector<Eigen::Vector2d> seen;
     for (const Eigen::Vector3d& p : points_)
       seen.push_back(projected(camera_at(x_m), 2 * Eigen::Vector3d(p.x() / p.z(), p.y() / p.z(), 1)));
@@ -56,12 +61,12 @@ class View {
   }
 
  private:
-  std::vector<LandmarkSighting> sightings(const std::vector<Eigen::Vector2d>& seen, const Rigid3& T_map_camera_start) {
+  Frame sightings(const std::vector<Eigen::Vector2d>& seen, const Rigid3& T_map_camera_start) {
     std::normal_distribution<double> noise(0, kSigmaPx / kFocalPx);
     std::vector<LandmarkSighting> result;
     Correspondences pairs(seen.size());
     for (std::uint32_t i = 0; i < seen.size(); ++i) {
-      result.push_back({i, seen[i] + Eigen::Vector2d(noise(random_), noise(random_)), {}, kSigmaPx / kFocalPx});
+      result.push_back({i, seen[i] + Eigen::Vector2d(noise(random_), noise(random_)), 0, kSigmaPx / kFocalPx});
       const Eigen::Vector3f p = points_[i].cast<float>();
       const Eigen::Vector2f at = result.back().seen.cast<float>();
       pairs.add(at.x(), at.y(), p.x(), p.y(), p.z(), 0, 1, 0, static_cast<std::int32_t>(i), static_cast<std::int32_t>(i));
@@ -69,8 +74,8 @@ class View {
     PoseRefinementOptions options;
     options.use_depth = false;
     const PoseRefinementResult pose = refine_pose(pairs, T_map_camera_start, kFocalPx, options, nullptr);
-    for (LandmarkSighting& sighting : result) sighting.expected = projected(pose.T_map_camera, points_[sighting.landmark]);
-    return result;
+    for (LandmarkSighting& sighting : result) sighting.depth_m = (pose.T_map_camera.inverse() * points_[sighting.landmark]).z();
+    return {pose.T_map_camera, result};
   }
 
   std::vector<Eigen::Vector3d> points_;
@@ -78,11 +83,11 @@ class View {
 };
 
 /// The frame, of 60 in which the camera moves 1 cm each, that shows it is no plane; 60 where none does.
-int shown_after(const std::function<std::vector<LandmarkSighting>(double)>& view) {
+int shown_after(const std::function<Frame(double)>& view) {
   MotionParallax parallax{MotionParallaxOptions{}};
   for (int i = 0; i < 60; ++i) {
-    auto sightings = view(0.01 * i);
-    if (parallax.add(i * kFrameNs, sightings)) return i;
+    Frame frame = view(0.01 * i);
+    if (parallax.add(i * kFrameNs, frame.T_map_camera, frame.sightings)) return i;
   }
   return 60;
 }
@@ -116,32 +121,35 @@ TEST(MotionParallax, TurningShowsNothing) {
               std::vector<LandmarkSighting> sightings;
               for (std::uint32_t i = 0; i < points.size(); ++i) {
                 const Eigen::Vector2d at = projected(T_map_camera, points[i]);
-                sightings.push_back({i, at, at, kSigmaPx / kFocalPx});
+                sightings.push_back({i, at, (T_map_camera.inverse() * points[i]).z(), kSigmaPx / kFocalPx});
               }
-              return sightings;
+              return Frame{T_map_camera, sightings};
             }),
             60);
+}
+
+bool add(MotionParallax* parallax, std::int64_t stamp_ns, Frame frame) {
+  return parallax->add(stamp_ns, frame.T_map_camera, frame.sightings);
 }
 
 TEST(MotionParallax, FramesFarApartInTimeAreNotCompared) {
   View view;
   MotionParallax parallax{MotionParallaxOptions{}};
-  auto first = view.of_room(0), second = view.of_room(0.3), third = view.of_room(0.6);
-  EXPECT_FALSE(parallax.add(0, first));
-  EXPECT_FALSE(parallax.add(6'000'000'000, second));
-  EXPECT_TRUE(parallax.add(7'000'000'000, third)) << "the second began anew";
+  EXPECT_FALSE(add(&parallax, 0, view.of_room(0)));
+  EXPECT_FALSE(add(&parallax, 6'000'000'000, view.of_room(0.3)));
+  EXPECT_TRUE(add(&parallax, 7'000'000'000, view.of_room(0.6))) << "the second began anew";
   parallax.reset();
-  EXPECT_FALSE(parallax.add(7'100'000'000, second));
+  EXPECT_FALSE(add(&parallax, 7'100'000'000, view.of_room(0.3)));
   EXPECT_EQ(parallax.evidence(), 0);
 }
 
 TEST(MotionParallax, NeedsLandmarksThatBothFramesShow) {
   View view;
   MotionParallax parallax{MotionParallaxOptions{}};
-  auto first = view.of_room(0), second = view.of_room(0.3);
-  for (LandmarkSighting& sighting : second) sighting.landmark += 121;  // 29 are left
-  EXPECT_FALSE(parallax.add(0, first));
-  EXPECT_FALSE(parallax.add(kFrameNs, second));
+  Frame second = view.of_room(0.3);
+  for (LandmarkSighting& sighting : second.sightings) sighting.landmark += 121;  // 29 are left
+  EXPECT_FALSE(add(&parallax, 0, view.of_room(0)));
+  EXPECT_FALSE(add(&parallax, kFrameNs, second));
   EXPECT_EQ(parallax.evidence(), 0);
 }
 
