@@ -96,7 +96,11 @@ TEST_P(LocalizerModes, SaysHowInconsistentTheMapIs) {
   const Matrix6d added = b.process(frame.view()).covariance - a.process(frame.view()).covariance;
   Vector6d variance = Vector6d::Constant(0.03 * 0.03);
   variance.tail<3>().setConstant(0.01 * 0.01);
-  EXPECT_LT((added - Matrix6d(variance.asDiagonal())).cwiseAbs().maxCoeff(), 1e-9);
+  // The rest is what landmarks that lie together are off together: never less, and of the same size.
+  const Matrix6d shared = added - Matrix6d(variance.asDiagonal());
+  EXPECT_GE((shared + 1e-9 * Matrix6d::Identity()).ldlt().vectorD().minCoeff(), 0);
+  EXPECT_GT(shared.trace(), 1e-6);
+  EXPECT_LT(shared.diagonal().maxCoeff(), 9 * 0.03 * 0.03);
 }
 
 TEST_P(LocalizerModes, SameFramesSameBits) {
@@ -133,7 +137,7 @@ TEST_P(LocalizerModes, NeverAllocatesInAFrame) {
     ASSERT_EQ(testing::num_allocations(), before) << "frame " << frame.sequence << ", " << to_string(state);
     num_localized += state == State::kLocalized ? 1 : 0;
   }
-  EXPECT_GE(num_localized, 10);
+  EXPECT_GE(num_localized, GetParam() ? 10 : 9) << "a single frame without depth may be a picture";
   EXPECT_LT(num_localized, static_cast<int>(frames.size()) - 3);
 }
 
@@ -189,7 +193,7 @@ TEST(Localizer, WorksWithoutDepthImages) {
     ++num_localized;
     EXPECT_LT(testing::nees(result, sample_pose(i)), testing::kNeesLimit) << i;
   }
-  EXPECT_GT(num_localized, testing::kMappedFrames - 30) << "once motion has shown that it is no picture";
+  EXPECT_GT(num_localized, testing::kMappedFrames - 60) << "within two seconds, once motion has shown that it is no picture";
 }
 
 std::int64_t fake_now_ns() {

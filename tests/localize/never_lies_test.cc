@@ -169,7 +169,7 @@ TEST(NeverLies, SingleFramesWithoutDepthMayAllBePictures) {
 }
 
 TEST(NeverLies, MotionShowsThatItIsThePlace) {
-  EXPECT_GE(num_localized_without_depth(true, [](std::uint64_t k) { return k; }), 30);
+  EXPECT_GE(num_localized_without_depth(true, [](std::uint64_t k) { return k; }), 10) << "of the first two seconds";
 }
 
 TEST(NeverLies, DepthThatContradicts) {
