@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/evaluation/judged_poses.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "core/geometry/symmetric_system.h"
 #include "core/io/file_bytes.h"
 
 namespace camloc::tools {
@@ -73,7 +73,7 @@ std::optional<JudgedPose> judge(const Json& record, const ReferencePose& referen
   judged.error_m = error.head<3>().norm();
   judged.error_rad = error.tail<3>().norm();
   judged.is_misleading = is_misleading(*truth, T_reference_camera);
-  judged.nees = error.dot(rotate_covariance(T_reference_estimate.rotation, covariance).ldlt().solve(error));
+  judged.nees = squared_mahalanobis(error, rotate_covariance(T_reference_estimate.rotation, covariance));
   judged.sigma_m = worst_sigma(covariance.topLeftCorner<3, 3>());
   judged.sigma_rad = worst_sigma(covariance.bottomRightCorner<3, 3>());
   return judged;
