@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The whole job is process(): observe the frame; for each proposer, cheapest first, examine what it proposes (solve each place, take
-// the best pose, solve the places that the map calls its look-alikes, verify it) and ask the gate whether it is to be believed, until
-// one is without doubt; then report. Below it are those steps, in that order.
+// the best pose, solve the places that the map calls its look-alikes, verify it) and ask the gate whether it is to be believed, and
+// motion parallax whether it is no picture, until one is without doubt; then report. Below it are those steps, in that order.
 #include "core/localize/localizer.h"
 
 #include <algorithm>
