@@ -23,15 +23,16 @@ ALLOWED = {folder: CORE[:i] for i, folder in enumerate(CORE)}
 ALLOWED["core/features"] = ["core/base", "core/geometry"]
 ALLOWED["core/localize"] = CORE[:6]
 ALLOWED["core/registration"] = ["core/base", "core/geometry", "core/features"]
+ALLOWED["core/coarse"] = CORE[:3]
 ALLOWED["core/optimize"] = ["core/base", "core/geometry"]
 ALLOWED["core/dense"] = ["core/base", "core/geometry", "core/features", "core/registration"]
 ALLOWED["core/slam"] = [*CORE[:7], "core/optimize", "core/dense"]
 ALLOWED["core/merge"] = [*ALLOWED["core/slam"], "core/slam"]
 ALLOWED["drivers"] = ["core/base", "core/geometry", "core/io"]
-ALLOWED["daemon"] = ["drivers", *CORE, *LCM_TYPES]
+ALLOWED["daemon"] = ["drivers", *CORE, "core/coarse", *LCM_TYPES]
 # Tools: what they share, libraries of one job each, those of map making in the order in which they build on each other, and
 # programs, which include libraries and not each other.
-SHARED = ["drivers", *CORE, "core/optimize", "core/dense", "core/slam", "core/merge", "tools/common"]
+SHARED = ["drivers", *CORE, "core/coarse", "core/optimize", "core/dense", "core/slam", "core/merge", "tools/common"]
 MAPPING = [f"tools/mapping/{room}" for room in ("site", "picture", "colmap", "build", "eval")]
 JOBS = [f"tools/{job}" for job in ("evaluation", "recording", "doctor", "monitor")]
 ALLOWED["tools/mapping/cloud"] = CORE[:3]
