@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # The Debian packages, written by cpack: camloc for the device, camloc-tools for the workstation, and one each for a program that
-# brings much of OpenCV with it, where that is built: camloc-calibration and camloc-bench. Included last by the main CMakeLists.txt;
+# brings a large library with it, where that is built: camloc-calibration, camloc-bench (OpenCV) and camloc-training (libtorch). Included last by the main CMakeLists.txt;
 # what goes into them is said by install() beside each program, what they weigh is in tests/packaging/weight.sh.
 set(packages camloc camloc-tools)
 if(TARGET camloc-camera)
@@ -10,6 +10,9 @@ if(TARGET camloc-camera)
 endif()
 if(TARGET camloc-bench)
   list(APPEND packages camloc-bench)
+endif()
+if(TARGET camloc-train)
+  list(APPEND packages camloc-training)
 endif()
 
 # Message types, for subscribers: the .lcm files, and a pkg-config file that says where they are.
@@ -63,7 +66,10 @@ board: lens, depth scale and how the two sensors are placed.")
 set(CPACK_DEBIAN_CAMLOC-BENCH_PACKAGE_NAME camloc-bench)
 set(CPACK_DEBIAN_CAMLOC-BENCH_DESCRIPTION "Measures where the time of localization goes on this machine and how accurate
 it is, beside a plain chain of OpenCV calls.")
-foreach(package TOOLS CALIBRATION BENCH)
+set(CPACK_DEBIAN_CAMLOC-TRAINING_PACKAGE_NAME camloc-training)
+set(CPACK_DEBIAN_CAMLOC-TRAINING_DESCRIPTION "Trains a network on the recordings that a map was made of: it says roughly
+where a camera is when camlocd has lost its place.")
+foreach(package TOOLS CALIBRATION BENCH TRAINING)
   set(CPACK_DEBIAN_CAMLOC-${package}_PACKAGE_RECOMMENDS camloc)
 endforeach()
 

@@ -43,6 +43,8 @@ ALLOWED["tools/monitor"] = [*SHARED, *LCM_TYPES]
 ALLOWED["tools/camloc"] = [*SHARED, *JOBS, *LCM_TYPES]
 ALLOWED["tools/camloc-map"] = [*SHARED, "tools/mapping"]
 ALLOWED["tools/camloc-bench"] = [*SHARED, "tools/evaluation", "tools/mapping"]
+ALLOWED["tools/training"] = [*SHARED, "tools/evaluation", "tools/mapping"]
+ALLOWED["tools/camloc-train"] = [*SHARED, "tools/training"]
 
 CORE_FORBIDDEN_HEADERS = re.compile(
     r"^<(thread|future|mutex|shared_mutex|condition_variable|semaphore|latch|barrier|stop_token|pthread\.h|iostream|ostream|"

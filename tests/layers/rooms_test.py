@@ -4,7 +4,7 @@
 """What keeps the tree readable, checked on all of it. Usage: rooms_test.py ROOT
 
 No folder holds more than 25 .cc files, no file more than 500 lines. The files of a module (a .h with its .cc) and another module
-do not include each other, directly or in a circle. Every .cc file of core, daemon and tools/mapping has a test of its name in the
+do not include each other, directly or in a circle. Every .cc file of core, daemon, tools/mapping and tools/training has a test of its name in the
 tests of its room, at any depth (core/slam/loops/x.cc: tests/slam/x_test.cc), or a line "x.cc: why not" in the room's untested.txt.
 """
 import pathlib
@@ -73,7 +73,7 @@ def size_breaches(root):
 def rooms(root):
     """Folders with code and the folder of their tests."""
     core = [folder for folder in sorted((root / "core").glob("*")) if folder.is_dir()]
-    return [(room, root / "tests" / room.name) for room in [*core, root / "daemon", root / "tools" / "mapping"]]
+    return [(room, root / "tests" / room.name) for room in [*core, root / "daemon", root / "tools" / "mapping", root / "tools" / "training"]]
 
 
 def untested(root):

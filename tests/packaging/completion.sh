@@ -4,7 +4,7 @@
 #
 # Completion in bash offers every command and option that --help lists, the frame sources, settings, and files of the right kind.
 . "$(dirname "$0")/lib.sh"
-for program in camlocd camloc camloc-map camloc-camera camloc-bench camloc-sim; do
+for program in camlocd camloc camloc-map camloc-camera camloc-bench camloc-sim camloc-train; do
   # shellcheck disable=SC1090
   . "$build/docs/completion/$program" || fail "$program: not valid"
 done

@@ -39,10 +39,15 @@ const char* const kProgramsHelp =
     "camloc-calibration:\n"
     "  camera calibrate            Find a camera's calibration with a flat board\n"
     "camloc-bench:\n"
-    "  bench                       Time and accuracy, beside plain OpenCV calls";
+    "  bench                       Time and accuracy, beside plain OpenCV calls\n"
+    "camloc-training:\n"
+    "  train                       Teach a network where in a map a camera is";
 /// The package that a program camloc-NAME is in.
-const std::map<std::string, std::string> kPackages{
-    {"map", "camloc-tools"}, {"sim", "camloc-tools"}, {"camera", "camloc-calibration"}, {"bench", "camloc-bench"}};
+const std::map<std::string, std::string> kPackages{{"map", "camloc-tools"},
+                                                   {"sim", "camloc-tools"},
+                                                   {"camera", "camloc-calibration"},
+                                                   {"bench", "camloc-bench"},
+                                                   {"train", "camloc-training"}};
 
 bool is_one_of(const std::string& word, const std::vector<std::string>& words) {
   return std::find(words.begin(), words.end(), word) != words.end();
@@ -81,7 +86,7 @@ int run_external(const CLI::App& app, const std::vector<std::string>& arguments)
   if (program) return report(exec_program(*program, {arguments.begin() + 1, arguments.end()}));
 
   std::vector<std::string> known = built_in_commands(app);
-  known.insert(known.begin(), {"bench", "sim"});
+  known.insert(known.begin(), {"bench", "sim", "train"});
   std::string hint = "see 'camloc --help'";
   if (const auto package = kPackages.find(arguments[0]); package != kPackages.end()) {
     hint = "install the package " + package->second;
