@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The camloc authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# The Debian packages, written by cpack: camloc for the device, camloc-tools for the workstation, and one each for a program that
-# brings a large library with it, where that is built: camloc-calibration, camloc-bench (OpenCV) and camloc-training (libtorch). Included last by the main CMakeLists.txt;
+# The Debian packages, written by cpack: camloc for the device, camloc-tools for the workstation, and one each for what brings a large
+# library with it, where that is built: camloc-calibration, camloc-bench, the plug-in camloc-coarse (OpenCV) and camloc-training
+# (libtorch). Included last by the main CMakeLists.txt;
 # what goes into them is said by install() beside each program, what they weigh is in tests/packaging/weight.sh.
 set(packages camloc camloc-tools)
 if(TARGET camloc-camera)
@@ -13,6 +14,9 @@ if(TARGET camloc-bench)
 endif()
 if(TARGET camloc-train)
   list(APPEND packages camloc-training)
+endif()
+if(TARGET camloc-opencv-dnn)
+  list(APPEND packages camloc-coarse)
 endif()
 
 # Message types, for subscribers: the .lcm files, and a pkg-config file that says where they are.
@@ -54,7 +58,7 @@ LCM types of the messages.")
 # dlopen by cameras that want it; ip sets the route of camloc-multicast.service.
 set(CPACK_DEBIAN_CAMLOC_PACKAGE_DEPENDS "systemd-standalone-sysusers | systemd, systemd-standalone-tmpfiles | systemd")
 set(CPACK_DEBIAN_CAMLOC_PACKAGE_RECOMMENDS "libopenni2-0, iproute2")
-set(CPACK_DEBIAN_CAMLOC_PACKAGE_SUGGESTS "camloc-tools, camloc-calibration")
+set(CPACK_DEBIAN_CAMLOC_PACKAGE_SUGGESTS "camloc-tools, camloc-calibration, camloc-coarse")
 
 set(CPACK_DEBIAN_CAMLOC-TOOLS_PACKAGE_NAME camloc-tools)
 set(CPACK_DEBIAN_CAMLOC-TOOLS_DESCRIPTION "Programs for the workstation: build, merge, evaluate and look at the maps that
@@ -69,7 +73,10 @@ it is, beside a plain chain of OpenCV calls.")
 set(CPACK_DEBIAN_CAMLOC-TRAINING_PACKAGE_NAME camloc-training)
 set(CPACK_DEBIAN_CAMLOC-TRAINING_DESCRIPTION "Trains a network on the recordings that a map was made of: it says roughly
 where a camera is when camlocd has lost its place.")
-foreach(package TOOLS CALIBRATION BENCH TRAINING)
+set(CPACK_DEBIAN_CAMLOC-COARSE_PACKAGE_NAME camloc-coarse)
+set(CPACK_DEBIAN_CAMLOC-COARSE_DESCRIPTION "Runs the neural networks that tell camlocd roughly where it is after it lost
+its place: a library that it loads when it needs it, with OpenCV behind it.")
+foreach(package TOOLS CALIBRATION BENCH TRAINING COARSE)
   set(CPACK_DEBIAN_CAMLOC-${package}_PACKAGE_RECOMMENDS camloc)
 endforeach()
 

@@ -7,8 +7,8 @@
     tools: common <- jobs, mapping/* <- programs; all -> drivers, core; camloc -> lcmtypes
     drivers -> core/base, core/geometry    core: base <- geometry <- features <- map <- localize, slam
 
-core/ has no thread, socket, file watcher, clock read or print. OpenCV is for the two programs with a package of their own:
-camloc-camera and camloc-bench. Usage: layers_test.py ROOT
+core/ has no thread, socket, file watcher, clock read or print. OpenCV is for what has a package of its own: camloc-camera,
+camloc-bench and the plug-in that runs networks. Usage: layers_test.py ROOT
 """
 import pathlib
 import re
@@ -28,6 +28,7 @@ ALLOWED["core/optimize"] = ["core/base", "core/geometry"]
 ALLOWED["core/dense"] = ["core/base", "core/geometry", "core/features", "core/registration"]
 ALLOWED["core/slam"] = [*CORE[:7], "core/optimize", "core/dense"]
 ALLOWED["core/merge"] = [*ALLOWED["core/slam"], "core/slam"]
+ALLOWED["plugins/opencv_dnn"] = ["core/coarse"]
 ALLOWED["drivers"] = ["core/base", "core/geometry", "core/io"]
 ALLOWED["daemon"] = ["drivers", *CORE, "core/coarse", *LCM_TYPES]
 # Tools: what they share, libraries of one job each, those of map making in the order in which they build on each other, and
@@ -57,7 +58,7 @@ CLOCK_CALLS = re.compile(
 # The library of map making tells an observer (core/base/work_observer.h) what the programs print, and asks it whether to stop.
 MAPPING_FORBIDDEN_HEADERS = re.compile(
     r'^("tools/common/(command_line|terminal_observer)\.h"|<(iostream|csignal|CLI/.*)>)$')
-OPENCV_PROGRAMS = ("tools/camloc-camera/", "tools/camloc-bench/")
+OPENCV_PROGRAMS = ("tools/camloc-camera/", "tools/camloc-bench/", "plugins/opencv_dnn/")
 INCLUDE = re.compile(r'^\s*#\s*include\s*(<[^>]+>|"[^"]+")')
 
 
@@ -78,7 +79,7 @@ def include_error(path, layer, target):
         return "OpenCV brings Mesa, LLVM and X11"
     if target.startswith('"') and "/" not in name:
         return "write the path from the top of the tree"
-    is_ours = name.split("/")[0] in ("core", "drivers", "daemon", "tools", "tests", *LCM_TYPES)
+    is_ours = name.split("/")[0] in ("core", "plugins", "drivers", "daemon", "tools", "tests", *LCM_TYPES)
     if not is_ours or any(name.startswith(folder + "/") for folder in [layer, *ALLOWED[layer]]):
         return None
     return f"{layer} may include only itself{''.join(', ' + folder for folder in ALLOWED[layer])}"
@@ -87,7 +88,7 @@ def include_error(path, layer, target):
 def violations(root):
     """Lines "file:line: what: why" for every breach in the tree, and the number of files read."""
     found, num_files = [], 0
-    for top in ("core", "drivers", "daemon", "tools"):
+    for top in ("core", "plugins", "drivers", "daemon", "tools"):
         for file in sorted((root / top).rglob("*")):
             path = file.relative_to(root).as_posix()
             if file.suffix not in (".h", ".cc", ".hpp", ".cpp", ".c"):
@@ -134,6 +135,8 @@ class RuleTest(unittest.TestCase):
                            ("tools/mapping/build/a.cc", '#include "tools/camloc-map/commands.h"'),
                            ("tools/mapping/build/a.cc", '#include "tools/common/terminal_observer.h"'),
                            ("tools/mapping/eval/a.cc", 'std::printf("x");'), ("tools/doctor/a.cc", '#include "camloc/pose_t.hpp"'),
+                           ("plugins/opencv_dnn/a.cc", '#include "core/map/map_view.h"'),
+                           ("core/coarse/a.cc", "#include <opencv2/dnn.hpp>"), ("core/coarse/a.cc", '#include "core/map/map_view.h"'),
                            ("tools/recording/a.cc", '#include "tools/evaluation/perturbation.h"')]:
             self.assertEqual(len(self.check(path, line)), 1, (path, line))
 
@@ -142,6 +145,7 @@ class RuleTest(unittest.TestCase):
                            ("daemon/a.cc", '#include "camloc/pose_t.hpp"'), ("tools/camloc-map/a.cc", '#include "tools/mapping/build/map_pipeline.h"'),
                            ("tools/mapping/eval/a.cc", '#include "tools/mapping/cloud/point_cloud.h"'),
                            ("tools/camloc-bench/a.cc", '#include "tools/evaluation/sequence_run.h"'),
+                           ("plugins/opencv_dnn/a.cc", "#include <opencv2/dnn.hpp>"),
                            ("tools/camloc-bench/a.cc", "#include <opencv2/core.hpp>"), ("core/map/a.cc", "// printf() is not used here"),
                            ("core/base/a.h", "#include <vector>"), ("core/map/a.cc", "std::snprintf(text, 3, format);")]:
             self.assertEqual(self.check(path, line), [], (path, line))

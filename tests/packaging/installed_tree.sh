@@ -11,7 +11,8 @@ for file in etc/camloc/camlocd.toml usr/bin/{camlocd,camloc,camloc-map,camloc-ca
   usr/lib/systemd/system/{camlocd.service,camloc-camera.target,camloc-multicast.service} usr/lib/udev/rules.d/60-camloc.rules \
   usr/lib/{sysusers,tmpfiles}.d/camloc.conf usr/share/man/man8/camlocd.8.gz usr/share/man/man5/camlocd.toml.5.gz \
   usr/share/bash-completion/completions/camloc usr/share/doc/camloc/{copyright,changelog.gz,examples/realtime.conf} \
-  usr/share/doc/camloc-{tools,calibration,bench,training}/copyright usr/share/pkgconfig/camloc-lcmtypes.pc; do
+  usr/share/doc/camloc-{tools,calibration,bench,training,coarse}/copyright usr/lib/*/camloc/camloc-opencv-dnn.so \
+  usr/share/pkgconfig/camloc-lcmtypes.pc; do
   [[ -s $file ]] || fail "/$file is not installed"
 done
 [[ -d etc/camloc/camlocd.toml.d ]] || fail "no folder for settings in pieces"

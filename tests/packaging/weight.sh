@@ -48,7 +48,7 @@ weigh camloc 17 25 "$(deb_of camloc)"
 ! grep -iE "$unwanted" <<<"$added" || fail "camloc brings the above with it"
 weigh camloc-tools 75 100 "$(deb_of camloc-tools)"
 ! grep -iE "$unwanted" <<<"$added" || fail "camloc-tools brings the above with it"
-for package in camloc-bench camloc-calibration camloc-training; do
+for package in camloc-bench camloc-calibration camloc-training camloc-coarse; do
   if [[ -e $root$(deb_of $package) ]]; then weigh $package 220 600 "$(deb_of $package)"; fi
 done
 # shellcheck disable=SC2046 # words
