@@ -59,6 +59,7 @@ struct Localization {
   double integrity_risk = 1;               ///< that the pose is off by more than 25 cm or 10 deg; 1 when there is none
   Protection protection;                   ///< radii that hold the error of a pose at the right place
   bool is_tracked = false;                 ///< found from the prediction, not by global search
+  const char* proposed_by = "";            ///< who said where to look (proposers.cc), of a LOCALIZED pose
   std::uint32_t num_features = 0;
   PoseEvidence evidence;                            ///< of the pose, or of the best candidate for one; before motion and map are asked
   Standing standing;                                ///< of that pose against rival places

@@ -97,9 +97,10 @@ Localizer::Localizer(const MapView& map, const RgbdCamera& camera, const Localiz
   view_.reserve(static_cast<std::size_t>(options_.orb.num_features));
   inliers_.reserve(view_.features.keypoints.capacity());
   sightings_.reserve(inliers_.capacity());
-  found_.reserve(2 * static_cast<std::size_t>(std::max(1, options_.numbers.max_places)) + 2 * rivals_.capacity());
+  // Twice: a proposer may join the one before.
+  found_.reserve(2 * (2 * static_cast<std::size_t>(std::max(1, options_.numbers.max_places)) + 2 * rivals_.capacity()));
   for (const ProposerEntry& entry : proposers)
-    proposers_.push_back(entry.make({map_, &camera_, &options_.numbers, options_.orb.num_features}));
+    proposers_.push_back({entry.name, entry.make({map_, &camera_, &options_.numbers, options_.orb.num_features})});
 }
 
 const Localization& Localizer::process(const Frame& frame) {
@@ -107,27 +108,35 @@ const Localization& Localizer::process(const Frame& frame) {
   if (const Reason unusable = observe(frame); unusable != Reason::kNone) return decline(frame, {.reason = unusable});
 
   Candidate best;
-  Proposer* proposed_by = nullptr;
-  for (const auto& proposer : proposers_) {
-    const auto proposals = proposer->propose({frame.stamp_ns, &view_, &gate_});
+  const NamedProposer* proposed_by = nullptr;
+  for (const NamedProposer& asked : proposers_) {
+    const auto proposals = asked.proposer->propose({frame.stamp_ns, &view_, &gate_});
     timer_.finish(Stage::kCandidates);
-    Candidate candidate = examine(frame, proposals);
+    const bool joins_earlier = asked.proposer->joins_earlier();
+    Candidate candidate = examine(frame, proposals, joins_earlier);
+    if (joins_earlier && candidate.reason == Reason::kNoCandidates) continue;
     candidate.reason = gate_.judge(frame.stamp_ns, candidate);
     if (candidate.reason == Reason::kNone && !is_shown_no_picture(frame.stamp_ns, candidate)) candidate.reason = Reason::kNoParallax;
     if (is_better(candidate, best)) {
       best = candidate;
-      proposed_by = proposer.get();
+      proposed_by = &asked;
     }
     if (best.reason == Reason::kNone && !gate_.is_doubtful(best)) break;
   }
   watch_calibration(best.evidence);
   if (best.reason != Reason::kNone) return decline(frame, best);
-  proposed_by->on_accepted();
-  return accept(frame, best);
+  proposed_by->proposer->on_accepted();
+  return accept(frame, best, proposed_by->name);
 }
 
 void Localizer::hint(const PoseHint& hint) {
-  for (const auto& proposer : proposers_) proposer->on_hint(hint);
+  for (const NamedProposer& asked : proposers_) asked.proposer->on_hint(hint);
+}
+
+void Localizer::coarse_hint(const CoarseHint& hint) {
+  if (!hint.is_valid()) return;
+  coarse_ = hint;
+  for (const NamedProposer& asked : proposers_) asked.proposer->on_coarse(hint);
 }
 
 void Localizer::reset() {
@@ -158,12 +167,14 @@ Reason Localizer::observe(const Frame& frame) {
 
 // The pose with the most inliers; what else was found says how far it stands out. Before a place is believed, those that the map calls
 // its look-alikes are asked, too.
-Candidate Localizer::examine(const Frame& frame, std::span<const Proposal> proposals) {
+Candidate Localizer::examine(const Frame& frame, std::span<const Proposal> proposals, bool joins_earlier) {
+  if (!joins_earlier) found_.clear();
   if (proposals.empty()) return {.reason = Reason::kNoCandidates};
   proposals = proposals.first(std::min(proposals.size(), static_cast<std::size_t>(std::max(1, options_.numbers.max_places))));
-  found_.clear();
   const std::uint64_t seed = frame.sequence * kSeedsPerFrame + options_.numbers.seed * kSeedStride;
+  const std::size_t num_earlier = found_.size();
   for (std::size_t i = 0; i < proposals.size(); ++i) solve(proposals[i], seed + i);
+  if (best_of_found() < num_earlier) return {.reason = Reason::kNoCandidates};
   Candidate best{.is_continuation = proposals.front().is_continuation, .overrides_motion = proposals.front().overrides_motion};
   // A rival that explains more has rivals of its own.
   for (int round = 0; round < 2 && !best.is_continuation; ++round) {
@@ -283,8 +294,10 @@ void Localizer::watch_calibration(const PoseEvidence& evidence) {
   calibration_.add(evidence.focal_scale, evidence.focal_scale_sigma);
 }
 
-const Localization& Localizer::accept(const Frame& frame, const Candidate& candidate) {
+const Localization& Localizer::accept(const Frame& frame, const Candidate& candidate, const char* proposed_by) {
   result_.state = State::kLocalized;
+  result_.proposed_by = proposed_by;
+  coarse_.reset();
   shared_covariance_ = candidate.evidence.shared_covariance;
   last_risk_features_ = risk_features(candidate.evidence, candidate.standing, candidate.is_continuation);
   set_pose(candidate.evidence.T_map_camera, candidate.evidence.covariance + shared_covariance_, last_risk_features_);
@@ -307,6 +320,9 @@ const Localization& Localizer::decline(const Frame& frame, const Candidate& cand
     // The risk is that of the candidate; what is published beside it is a hint for people.
     result_.covariance += coarse_uncertainty();
     result_.protection = protection_of(result_.covariance);
+  } else if (coarse_ && coarse_->is_current(frame.stamp_ns)) {
+    result_.state = State::kCoarse;
+    set_coarse_pose(frame.stamp_ns);
   }
   return report(candidate);
 }
@@ -326,6 +342,16 @@ void Localizer::set_pose(const Rigid3& T_map_camera, const Matrix6d& covariance,
   result_.T_map_camera = T_map_camera;
   result_.covariance = with_map_uncertainty(covariance);
   result_.integrity_risk = integrity_risk(features, result_.covariance);
+  result_.protection = protection_of(result_.covariance);
+  result_.quality = 0;
+}
+
+// Nothing in this frame speaks for it: its risk is that of no pose.
+void Localizer::set_coarse_pose(std::int64_t stamp_ns) {
+  result_.has_pose = true;
+  result_.T_map_camera = coarse_->T_map_camera;
+  result_.covariance = with_map_uncertainty(coarse_->covariance_at(stamp_ns));
+  result_.integrity_risk = 1;
   result_.protection = protection_of(result_.covariance);
   result_.quality = 0;
 }

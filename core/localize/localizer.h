@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "core/features/orb_extractor.h"
 #include "core/geometry/camera.h"
 #include "core/localize/calibration_monitor.h"
+#include "core/localize/coarse_hint.h"
 #include "core/localize/gate.h"
 #include "core/localize/localization.h"
 #include "core/localize/localizer_numbers.h"
@@ -49,6 +51,9 @@ class Localizer {
   const Localization& process(const Frame& frame);
   /// The next frames are looked for there first; ignored unless valid.
   void hint(const PoseHint& hint);
+  /// Looked at where nothing else leads to a pose, while it is current; ignored unless valid. Until then it is what COARSE says where
+  /// no view of the map is alike.
+  void coarse_hint(const CoarseHint& hint);
   /// Forgets the last pose.
   void reset();
   [[nodiscard]] const CalibrationHealth& calibration() const { return calibration_.health(); }
@@ -56,7 +61,7 @@ class Localizer {
  private:
   void begin(const Frame& frame);
   [[nodiscard]] Reason observe(const Frame& frame);
-  [[nodiscard]] Candidate examine(const Frame& frame, std::span<const Proposal> proposals);
+  [[nodiscard]] Candidate examine(const Frame& frame, std::span<const Proposal> proposals, bool joins_earlier);
   void solve(const Proposal& proposal, std::uint64_t seed);
   void gather_candidates(const Proposal& place);
   void keep(const PoseEvidence& found);
@@ -66,10 +71,11 @@ class Localizer {
   [[nodiscard]] std::size_t best_of_found() const;
   [[nodiscard]] bool is_shown_no_picture(std::int64_t stamp_ns, const Candidate& candidate);
   void watch_calibration(const PoseEvidence& evidence);
-  const Localization& accept(const Frame& frame, const Candidate& candidate);
+  const Localization& accept(const Frame& frame, const Candidate& candidate, const char* proposed_by);
   const Localization& decline(const Frame& frame, const Candidate& candidate);
   const Localization& report(const Candidate& candidate);
   void set_pose(const Rigid3& T_map_camera, const Matrix6d& covariance, const RiskFeatures& features);
+  void set_coarse_pose(std::int64_t stamp_ns);
   [[nodiscard]] Matrix6d with_map_uncertainty(const Matrix6d& covariance) const;
 
   const MapView* map_;
@@ -82,7 +88,11 @@ class Localizer {
   MapLandmarks landmarks_;
   PyramidLevels levels_;
   PoseSolver solver_;
-  std::vector<std::unique_ptr<Proposer>> proposers_;
+  struct NamedProposer {
+    const char* name;
+    std::unique_ptr<Proposer> proposer;
+  };
+  std::vector<NamedProposer> proposers_;
   std::vector<Hypothesis> found_;                 ///< for the proposals at hand
   std::vector<std::uint32_t> list_;               ///< landmarks of one keyframe
   std::vector<std::uint32_t> visit_of_landmark_;  ///< the visit_ at which a landmark became a candidate
@@ -95,6 +105,7 @@ class Localizer {
   Matrix6d shared_covariance_ = Matrix6d::Zero();  ///< of the last pose; the gate weighs poses without it
   CalibrationMonitor calibration_;
   RiskFeatures last_risk_features_{};  ///< of the last pose, while it is predicted from
+  std::optional<CoarseHint> coarse_;   ///< the last one
   Localization result_;
 };
 

@@ -12,6 +12,7 @@
 #include <span>
 
 #include "core/geometry/camera.h"
+#include "core/localize/coarse_hint.h"
 #include "core/localize/gate.h"
 #include "core/localize/localizer_numbers.h"
 #include "core/localize/pose_hint.h"
@@ -57,10 +58,15 @@ class Proposer {
   virtual ~Proposer() = default;
   /// Places to look at for this frame, most promising first; at most LocalizerNumbers::max_places count. Valid until the next call.
   [[nodiscard]] virtual std::span<const Proposal> propose(const ProposerInput& input) = 0;
+  /// Its places are weighed together with those of the proposer before it, which was asked for the same frame: each is a rival of the
+  /// others. Without a better one than those, it has said nothing.
+  [[nodiscard]] virtual bool joins_earlier() const { return false; }
   /// A proposal of the last propose() became the pose.
   virtual void on_accepted() {}
   /// Somebody says where the camera is.
   virtual void on_hint(const PoseHint&) {}
+  /// Somebody has looked at a frame and says roughly where it was taken.
+  virtual void on_coarse(const CoarseHint&) {}
 };
 
 struct ProposerEntry {

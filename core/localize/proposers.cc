@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The table of proposers. A new one adds its line here and nothing else.
+#include "core/localize/coarse_proposer.h"
 #include "core/localize/hint_proposer.h"
 #include "core/localize/motion_proposer.h"
 #include "core/localize/retrieval_proposer.h"
@@ -18,6 +19,7 @@ constexpr ProposerEntry kProposers[] = {
     {"hint", make<HintProposer>},
     {"motion", make<MotionProposer>},
     {"retrieval", make<RetrievalProposer>},
+    {"coarse", make<CoarseProposer>},
 };
 
 }  // namespace

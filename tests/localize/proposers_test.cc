@@ -70,7 +70,7 @@ TEST(Proposers, WithoutAnyTheCameraIsLost) {
 TEST(Proposers, TheTableIsCheapestFirst) {
   std::vector<std::string> names;
   for (const ProposerEntry& entry : proposer_table()) names.emplace_back(entry.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"hint", "motion", "retrieval"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"hint", "motion", "retrieval", "coarse"}));
 }
 
 }  // namespace
