@@ -40,6 +40,10 @@ const auto& table() {
       Setting{"localize", "depth", &Config::localize_depth, true, "", 0, 0, "", true, "Use the depth image, not only the colour image."},
       Setting{"localize", "max_coast_ms", &Config::localize_max_coast_ms, std::int64_t{500}, "ms", 0, 5000, "", true,
               "How long a pose is predicted (COASTING) after the last verified one."},
+      Setting{
+          "coarse", "cnn", &Config::coarse_cnn, std::string(), "", 0, kMaxText, "", true,
+          "Coarse model of this map (camloc train): a neural network that says roughly where the camera is while it is lost. Needs the\n"
+          "package camloc-coarse; loaded when a frame is lost, given back after 30 s without one. Empty: off."},
       Setting{"publish", "lcm_url", &Config::publish_lcm_url, std::string("udpm://239.255.76.67:7667?ttl=0"), "", 1, kMaxText, "", false,
               "LCM provider. ttl=0 keeps messages on this machine."},
       Setting{"publish", "pose_channel", &Config::publish_pose_channel, std::string("CAMLOC_POSE"), "", 1, 60, "", false,

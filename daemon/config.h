@@ -28,6 +28,7 @@ struct Config {
   std::int64_t localize_features;
   bool localize_tracking, localize_depth;
   std::int64_t localize_max_coast_ms;
+  std::string coarse_cnn;
   std::string publish_lcm_url, publish_pose_channel, publish_status_channel, publish_bot_core_channel, publish_frame;
   std::string control_socket, control_hint_channel;
   std::string log_level;

@@ -114,6 +114,11 @@ std::string control_reply(const DaemonStatus& status) {
   json.add("rss_bytes", status.rss_bytes);
   json.add("is_calibration_suspect", status.is_calibration_suspect);
   json.add("focal_scale", status.focal_scale);
+  json.add("coarse_state", status.coarse_state);
+  json.add("coarse_answers", status.coarse_answers);
+  json.add("fixes_by_hint", status.fixes_by_hint);
+  json.add("fixes_by_retrieval", status.fixes_by_retrieval);
+  json.add("fixes_by_coarse", status.fixes_by_coarse);
   return json.str();
 }
 

@@ -28,7 +28,8 @@ struct ControlRequest {
 
 /// {"ok":true} / {"ok":false,"error":"..."}, without a line feed.
 [[nodiscard]] std::string control_reply(const Status& status);
-/// {"ok":true,"state":"LOCALIZED",...}: every field under the name it has in status_t; map_id as text in hexadecimal, because
+/// {"ok":true,"state":"LOCALIZED",...}: every field under the name it has in status_t, and of the coarse worker what status_t, which
+/// is never edited, does not have; map_id as text in hexadecimal, because
 /// JSON numbers lose the low bits of 64-bit integers.
 [[nodiscard]] std::string control_reply(const DaemonStatus& status);
 

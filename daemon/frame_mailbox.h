@@ -22,6 +22,14 @@ struct CapturedFrame {
 /// One writer thread, one reader thread.
 class FrameMailbox {
  public:
+  /// Before either begins: memory for frames of these sizes, so that the first ones allocate nothing.
+  void reserve(int color_width, int color_height, int depth_width, int depth_height) {
+    for (CapturedFrame& frame : buffers_) {
+      frame.buffer.gray.resize(color_width, color_height);
+      frame.buffer.depth.resize(depth_width, depth_height);
+    }
+  }
+
   /// Writer: the buffer to fill next; keeps its memory from earlier frames.
   [[nodiscard]] CapturedFrame& back() { return buffers_[back_]; }
 

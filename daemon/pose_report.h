@@ -49,6 +49,9 @@ struct DaemonStatus {
   double clock_drift_ppm = 0;
   double frame_rate_hz = 0, latency_p50_ms = 0, latency_max_ms = 0;  ///< over the last second
   std::int64_t rss_bytes = 0;
+  const char* coarse_state = "off";  ///< of the neural network: off, or see to_string(CoarsePhase)
+  std::int64_t coarse_answers = 0;   ///< of it since the map was opened
+  std::int64_t fixes_by_hint = 0, fixes_by_retrieval = 0, fixes_by_coarse = 0;  ///< poses that were not tracked: who said where to look
   bool is_calibration_suspect = false;
   double focal_scale = 1;  ///< true / assumed focal length
 };

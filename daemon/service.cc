@@ -117,6 +117,7 @@ void Service::step(int timeout_ms) {
 
 bool Service::stop() {
   control_.reset();
+  coarse_.reset();
   return capture_ == nullptr || capture_->stop(kStopPatience);
 }
 
@@ -159,6 +160,7 @@ void Service::on_tick() {
   connect();
   if (map_.is_loaded()) check_map_file();
   retry_map();
+  check_coarse();
   board_.close_window(now_ns);
   publish_status();
   notifier_.status(board_.get().state_text.c_str());
@@ -176,6 +178,7 @@ void Service::adopt_source(const CaptureReport& report) {
   if (camera_ && format_camera_toml(*camera_) == format_camera_toml(*camera)) return;
   if (camera_ && map_.is_loaded()) {
     log_.write(LogLevel::kInfo, "another camera: the map is opened anew with its calibration");
+    coarse_.reset();
     map_.drop();
   }
   camera_ = std::move(camera).value();
@@ -249,7 +252,10 @@ void Service::on_frame(const CapturedFrame& captured) {
 const Localization& Service::localize(const Frame& frame) {
   if (map_.is_loaded()) {
     pass_hint_on();
+    if (const auto hint = coarse_ ? coarse_->take() : std::nullopt) map_.localizer().coarse_hint(*hint);
     const Localization& localization = map_.localizer().process(frame);
+    const bool is_lost = localization.state == State::kLost || localization.state == State::kCoarse;
+    if (coarse_ && is_lost && !map_.is_damaged()) coarse_->offer(frame);
     // What was read from a page that is gone is not to be believed.
     if (!map_.is_damaged()) {
       num_resets_ = localization.reset_counter;
@@ -321,6 +327,8 @@ void Service::publish_status() {
 // What the capture thread counts, as of now: between two messages the control socket asks, too.
 void Service::refresh_counters() {
   if (capture_) board_.set_capture(capture_->counts(), capture_->mailbox().num_dropped());
+  board_.counters().coarse_state = coarse_ ? to_string(coarse_->phase()) : "off";
+  board_.counters().coarse_answers = coarse_ ? coarse_->num_answers() : 0;
   board_.counters().reset_counter = std::int64_t{reset_offset_} + num_resets_;
 }
 

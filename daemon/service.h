@@ -16,6 +16,7 @@
 #include "core/geometry/camera.h"
 #include "core/localize/localization.h"
 #include "daemon/capture_thread.h"
+#include "daemon/coarse_worker.h"
 #include "daemon/config.h"
 #include "daemon/control_socket.h"
 #include "daemon/hint_listener.h"
@@ -81,6 +82,8 @@ class Service {
   void check_map_file();
   void announce_map();
   void drop_map(const std::string& why);
+  void start_coarse();
+  void check_coarse();
 
   // State, network, watchdog.
   void set_state(State state, const char* text);
@@ -97,6 +100,7 @@ class Service {
   StatusBoard board_;
   std::unique_ptr<PoseSink> sink_;
   MapSlot map_;
+  std::unique_ptr<CoarseWorker> coarse_;  // of this map, where one is configured
   UniqueFd signal_fd_, wake_fd_, timer_fd_;
   std::unique_ptr<ControlSocket> control_;
   std::unique_ptr<HintListener> hint_listener_;
@@ -113,7 +117,7 @@ class Service {
   std::uint32_t reset_offset_ = 0;  // of the ones before
   std::optional<PoseHint> hint_;    // waits for the next frame
   std::int64_t hint_ns_ = 0;        // when it came
-  RepeatFilter map_trouble_, route_trouble_, source_trouble_, hint_trouble_;
+  RepeatFilter coarse_trouble_, map_trouble_, route_trouble_, source_trouble_, hint_trouble_;
   std::int64_t last_frame_ns_ = 0, next_second_ns_ = 0, watchdog_fed_ns_ = 0;
   std::optional<int> exit_code_;
 };

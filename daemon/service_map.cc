@@ -69,11 +69,28 @@ void Service::announce_map() {
   if (!map_.knows_look_alikes())
     log_.write(LogLevel::kWarning, "the map does not know its look-alikes, and a pose may be at one: camloc map upgrade %s",
                map_.path().c_str());
+  start_coarse();
+}
+
+// Poses of a network are poses in one map; another map or another camera has a worker of its own.
+void Service::start_coarse() {
+  coarse_.reset();
+  coarse_trouble_.clear();
+  if (in_.config.coarse_cnn.empty()) return;
+  coarse_ = std::make_unique<CoarseWorker>(coarse_worker_options(in_.config.coarse_cnn, map_.info().map_id, *camera_));
+}
+
+// Without the network the map is asked by words alone, as it is where none is configured.
+void Service::check_coarse() {
+  if (!coarse_ || coarse_->phase() != CoarsePhase::kFailed) return;
+  const std::string problem = coarse_->problem();
+  if (coarse_trouble_.is_new(problem)) log_.write(LogLevel::kWarning, "no coarse model: %s", problem.c_str());
 }
 
 void Service::drop_map(const std::string& why) {
   log_.write(LogLevel::kError, "map dropped: %s", why.c_str());
   no_map_.reason = Reason::kMapDamaged;
+  coarse_.reset();
   map_.drop();
   board_.set_map(in_.config.map_path, 0);
 }

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
+#include "core/coarse/coarse_network.h"
 #include "core/io/camera_file.h"
+#include "core/map/map_view.h"
 #include "daemon/clock.h"
 
 namespace camloc {
@@ -18,6 +20,18 @@ Status check_size(const std::string& what, int source_width, int source_height, 
   return {ErrorCode::kInvalid, config.source_url + " delivers " + what + " images of " + size_text(source_width, source_height) + " but " +
                                    calibration + " is for " + size_text(camera.width, camera.height) +
                                    "; set source.camera to its calibration"};
+}
+
+/// The map may be missing at start, and then nobody can say whose the model is.
+Status check_coarse(const Config& config) {
+  if (config.coarse_cnn.empty()) return Status::ok();
+  const Result<CoarseModel> model = read_coarse_model(config.coarse_cnn);
+  if (!model) return model.status();
+  const Result<MapView> map = MapView::open(config.map_path);
+  if (map) {
+    if (Status status = check_coarse_map(model->info, map->info().map_id); !status) return status.with_context(config.coarse_cnn);
+  }
+  return check_network_plugin();
 }
 
 bool stays_on_machine(const std::string& lcm_url) {
@@ -85,6 +99,7 @@ Status check_config(const Config& config, SourceTable sources, SinkTable sinks) 
   if (const Status status = check_settings(config, sources, sinks); !status) return status;
   const Result<std::optional<RgbdCamera>> camera = read_configured_camera(config);
   if (!camera) return camera.status();
+  if (const Status status = check_coarse(config); !status) return status.with_context("coarse.cnn");
   if (config.source_url.empty() || !(*find_source(config.source_url, sources))->is_recording) return Status::ok();
   const Result<std::unique_ptr<FrameSource>> source = open_frame_source(config.source_url, {}, sources);
   if (!source) return source.status().with_context("source.url");

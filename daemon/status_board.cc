@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdio>
 #include <cstring>
+#include <string_view>
 
 namespace camloc {
 namespace {
@@ -36,7 +37,13 @@ StatusBoard::StatusBoard(const std::string& source, const std::string& map_path,
 
 void StatusBoard::add_frame(const Localization& localization, std::int64_t latency_ns) {
   latency_.add(latency_ns);
-  if (localization.state == State::kLocalized) ++status_.frames_localized;
+  if (localization.state != State::kLocalized) return;
+  ++status_.frames_localized;
+  if (localization.is_tracked) return;
+  const std::string_view by = localization.proposed_by;
+  if (by == "hint") ++status_.fixes_by_hint;
+  if (by == "retrieval") ++status_.fixes_by_retrieval;
+  if (by == "coarse") ++status_.fixes_by_coarse;
 }
 
 bool StatusBoard::set_state(State state, const char* text) {

@@ -26,9 +26,7 @@ struct LoadedPlugin {
 };
 
 Result<LoadedPlugin> load_plugin(const std::string& path) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored))
-    return Status(ErrorCode::kNotFound, path + ": not there; coarse models are run by the package camloc-coarse, install it");
+  if (Status status = check_network_plugin(path); !status) return status;
   LoadedPlugin plugin;
   plugin.library.reset(::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL));
   if (!plugin.library) return Status(ErrorCode::kUnsupported, std::string("cannot load the plug-in: ") + ::dlerror());
@@ -80,6 +78,12 @@ Status CoarseNetwork::Impl::create(const CoarseModel& model) {
 std::string network_plugin_path() {
   const char* path = std::getenv("CAMLOC_NETWORK_PLUGIN");  // NOLINT(concurrency-mt-unsafe): nobody here sets any
   return path != nullptr ? path : CAMLOC_PLUGIN_FOLDER "/camloc-opencv-dnn.so";
+}
+
+Status check_network_plugin(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored)) return Status::ok();
+  return {ErrorCode::kNotFound, path + ": not there; coarse models are run by the package camloc-coarse, install it"};
 }
 
 Result<CoarseNetwork> CoarseNetwork::load(const CoarseModel& model, const RgbdCamera& camera, const std::string& plugin_path) {

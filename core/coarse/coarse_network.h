@@ -26,6 +26,9 @@ struct CoarsePose {
 /// The installed plug-in, or what the environment variable CAMLOC_NETWORK_PLUGIN names.
 [[nodiscard]] std::string network_plugin_path();
 
+/// Whether there is one to load: kNotFound says which package has it.
+[[nodiscard]] Status check_network_plugin(const std::string& path = network_plugin_path());
+
 /// Movable; belongs to one thread at a time. Loads the plug-in and the network at construction, gives both back at destruction. What
 /// the libraries behind the plug-in keep for themselves stays as clean pages of their files.
 class CoarseNetwork {

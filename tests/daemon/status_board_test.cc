@@ -77,5 +77,23 @@ TEST(StatusBoardTest, CountsWhatItIsTold) {
   EXPECT_GT(status.rss_bytes, 100'000);
 }
 
+TEST(StatusBoardTest, CountsWhoFoundThePlace) {
+  StatusBoard board("sample://", "map.cmap", 0);
+  Localization pose;
+  pose.state = State::kLocalized;
+  for (const char* by : {"retrieval", "coarse", "coarse", "hint", "retrieval", "coarse"}) {
+    pose.proposed_by = by;
+    board.add_frame(pose, 1);
+  }
+  pose.is_tracked = true;
+  board.add_frame(pose, 1);
+  pose.is_tracked = false;
+  pose.state = State::kLost;
+  board.add_frame(pose, 1);
+  EXPECT_EQ(board.get().fixes_by_coarse, 3);
+  EXPECT_EQ(board.get().fixes_by_retrieval, 2);
+  EXPECT_EQ(board.get().fixes_by_hint, 1);
+}
+
 }  // namespace
 }  // namespace camloc
