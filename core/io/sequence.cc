@@ -9,9 +9,12 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <map>
+#include <queue>
 #include <system_error>
 #include <tuple>
+#include <utility>
 
 #include "core/io/file_bytes.h"
 #include "core/io/text.h"
@@ -60,25 +63,77 @@ Result<std::vector<StampedFile>> read_image_list(const fs::path& folder, const c
   return files;
 }
 
-/// Each depth image goes to at most one colour image: closest pairs first.
-void associate(const std::vector<StampedFile>& depths, std::vector<SequenceFrame>* frames) {
-  std::vector<std::tuple<std::int64_t, std::size_t, std::size_t>> candidates;  // gap, colour, depth
-  std::size_t first = 0;
-  for (std::size_t color = 0; color < frames->size(); ++color) {
-    const std::int64_t stamp_ns = (*frames)[color].stamp_ns;
-    while (first < depths.size() && depths[first].stamp_ns < stamp_ns - kMaxGapNs) ++first;
-    for (std::size_t depth = first; depth < depths.size() && depths[depth].stamp_ns <= stamp_ns + kMaxGapNs; ++depth) {
-      candidates.emplace_back(std::abs(depths[depth].stamp_ns - stamp_ns), color, depth);
+/// Colour and depth images as one list by time, with the neighbours of each among those that have no partner yet. The closest pair is
+/// always one of neighbours (stamps of one kind differ), so that no other pair is ever looked at: however close together the stamps
+/// are, there are fewer candidates than twice the images.
+class PairsByTime {
+ public:
+  PairsByTime(const std::vector<StampedFile>& depths, const std::vector<SequenceFrame>& colors, std::int64_t max_gap_ns)
+      : max_gap_ns_(max_gap_ns) {
+    for (std::size_t color = 0, depth = 0; color < colors.size() || depth < depths.size();) {
+      const bool is_color = depth == depths.size() || (color < colors.size() && colors[color].stamp_ns <= depths[depth].stamp_ns);
+      images_.push_back(is_color ? Image{colors[color].stamp_ns, true, color} : Image{depths[depth].stamp_ns, false, depth});
+      ++(is_color ? color : depth);
+    }
+    for (std::size_t i = 0; i < images_.size(); ++i) {
+      images_[i].before = i == 0 ? kNone : i - 1;
+      images_[i].after = i + 1 < images_.size() ? i + 1 : kNone;
+      propose(i, images_[i].after);
     }
   }
-  std::sort(candidates.begin(), candidates.end());
-  std::vector<bool> is_taken(depths.size(), false);
-  for (const auto& [gap, color, depth] : candidates) {
-    std::string& depth_path = (*frames)[color].depth_path;
-    if (is_taken[depth] || !depth_path.empty()) continue;
-    is_taken[depth] = true;
-    depth_path = depths[depth].path;
+
+  /// Colour and depth of the closest pair left, each once.
+  std::optional<std::pair<std::size_t, std::size_t>> next() {
+    while (!closest_first_.empty()) {
+      const Candidate best = closest_first_.top();
+      closest_first_.pop();
+      if (images_[best.color].is_taken || images_[best.depth].is_taken) continue;
+      remove(best.color);
+      remove(best.depth);
+      const auto [first, last] = std::minmax(best.color, best.depth);
+      propose(images_[first].before, images_[last].after);
+      return std::pair(images_[best.color].index, images_[best.depth].index);
+    }
+    return std::nullopt;
   }
+
+ private:
+  static constexpr std::size_t kNone = SIZE_MAX;
+  struct Image {
+    std::int64_t stamp_ns = 0;
+    bool is_color = false;
+    std::size_t index = 0;  // in its own list
+    std::size_t before = kNone, after = kNone;
+    bool is_taken = false;
+  };
+  struct Candidate {
+    std::int64_t gap_ns = 0;
+    std::size_t color = 0, depth = 0;  // in images_
+    bool operator>(const Candidate& other) const {
+      return std::tie(gap_ns, color, depth) > std::tie(other.gap_ns, other.color, other.depth);
+    }
+  };
+
+  void propose(std::size_t a, std::size_t b) {
+    if (a == kNone || b == kNone || images_[a].is_color == images_[b].is_color) return;
+    const std::int64_t gap_ns = std::abs(images_[a].stamp_ns - images_[b].stamp_ns);
+    if (gap_ns <= max_gap_ns_) closest_first_.push(images_[a].is_color ? Candidate{gap_ns, a, b} : Candidate{gap_ns, b, a});
+  }
+  void remove(std::size_t i) {
+    images_[i].is_taken = true;
+    if (images_[i].before != kNone) images_[images_[i].before].after = images_[i].after;
+    if (images_[i].after != kNone) images_[images_[i].after].before = images_[i].before;
+  }
+
+  std::int64_t max_gap_ns_;
+  std::vector<Image> images_;
+  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> closest_first_;
+};
+
+/// Each depth image goes to at most one colour image: closest pairs first.
+void associate(const std::vector<StampedFile>& depths, std::vector<SequenceFrame>* frames) {
+  PairsByTime pairs(depths, *frames, kMaxGapNs);
+  while (const auto pair = pairs.next()) (*frames)[pair->first].depth_path = depths[pair->second].path;
 }
 
 Result<Sequence> read_tum(const std::string& folder) {

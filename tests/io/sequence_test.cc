@@ -2,6 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/io/sequence.h"
 
+#include <algorithm>
+#include <cstdlib>
+#include <random>
+#include <set>
+#include <tuple>
+
 #include "tests/drivers/test_folder.h"
 
 namespace camloc {
@@ -44,6 +50,76 @@ TEST(Sequence, DepthIsGivenOutOnce) {
   ASSERT_TRUE(sequence.is_ok());
   EXPECT_EQ(sequence->frames[0].depth_path, "");
   EXPECT_EQ(sequence->frames[1].depth_path, folder / "d");
+}
+
+/// "SECONDS x" a line; `stamps_us` ascend.
+std::string list_of(const std::vector<std::int64_t>& stamps_us, const std::string& prefix) {
+  std::string text;
+  for (const std::int64_t us : stamps_us) {
+    const std::string fraction = std::to_string(1'000'000 + us % 1'000'000).substr(1);
+    text += std::to_string(us / 1'000'000) + "." + fraction + " " + prefix + std::to_string(us % 10) + "\n";
+  }
+  return text;
+}
+
+/// The contract, tried on every pair: of all pairs left the closest, then the earlier colour, then the earlier depth.
+std::vector<std::int64_t> closest_first(const std::vector<std::int64_t>& colors, const std::vector<std::int64_t>& depths) {
+  std::vector<std::tuple<std::int64_t, std::size_t, std::size_t>> all;
+  for (std::size_t c = 0; c < colors.size(); ++c) {
+    for (std::size_t d = 0; d < depths.size(); ++d) {
+      if (std::abs(colors[c] - depths[d]) <= 20'000) all.emplace_back(std::abs(colors[c] - depths[d]), c, d);
+    }
+  }
+  std::sort(all.begin(), all.end());
+  std::vector<std::int64_t> of_color(colors.size(), -1);
+  std::set<std::size_t> taken;
+  for (const auto& [gap, c, d] : all) {
+    if (of_color[c] < 0 && taken.insert(d).second) of_color[c] = static_cast<std::int64_t>(d);
+  }
+  return of_color;
+}
+
+std::vector<std::int64_t> ascending_stamps(std::mt19937& random, std::size_t count, int largest_us) {
+  std::set<std::int64_t> stamps;
+  while (stamps.size() < count) stamps.insert(std::uniform_int_distribution<int>(0, largest_us)(random));
+  return {stamps.begin(), stamps.end()};
+}
+
+TEST(Sequence, ClosestPairsFirstAsEveryPairTried) {
+  const TestFolder folder;
+  for (int i = 0; i < 60; ++i) touch(folder, {("d" + std::to_string(i)).c_str()});
+  touch(folder, {"c0", "c1", "c2", "c3", "c4", "c5", "c6", "c7", "c8", "c9"});
+  std::mt19937 random(7);
+  for (int round = 0; round < 60; ++round) {
+    const int largest_us = round % 3 == 0 ? 99 : round % 3 == 1 ? 60'000 : 900'000;  // many ties, some, none
+    const std::vector<std::int64_t> colors = ascending_stamps(random, 40, largest_us);
+    const std::vector<std::int64_t> depths = ascending_stamps(random, 60, largest_us);
+    folder.write("rgb.txt", list_of(colors, "c"));
+    std::string text;
+    for (std::size_t i = 0; i < depths.size(); ++i) text += list_of({depths[i]}, "").substr(0, 8) + " d" + std::to_string(i) + "\n";
+    folder.write("depth.txt", text);
+    const auto sequence = read_sequence(folder.path());
+    ASSERT_TRUE(sequence.is_ok()) << sequence.status().message();
+    const std::vector<std::int64_t> expected = closest_first(colors, depths);
+    for (std::size_t c = 0; c < colors.size(); ++c) {
+      const std::string depth = expected[c] < 0 ? "" : folder / ("d" + std::to_string(expected[c]));
+      ASSERT_EQ(sequence->frames[c].depth_path, depth) << "round " << round << ", colour " << c;
+    }
+  }
+}
+
+// All pairs within 20 ms would be 400 million here: 10 GB and minutes.
+TEST(Sequence, StampsCloseTogetherAreStillPairedInOneGo) {
+  const TestFolder folder;
+  touch(folder, {"x"});
+  std::string text;
+  for (int i = 0; i < 20'000; ++i) text += "0." + std::to_string(10'000'000 + i) + " x\n";
+  folder.write("rgb.txt", text);
+  folder.write("depth.txt", text);
+  const auto sequence = read_sequence(folder.path());
+  ASSERT_TRUE(sequence.is_ok()) << sequence.status().message();
+  ASSERT_EQ(sequence->frames.size(), 20'000U);
+  for (const SequenceFrame& frame : sequence->frames) ASSERT_FALSE(frame.depth_path.empty());
 }
 
 TEST(Sequence, TumAsOthersWriteIt) {
