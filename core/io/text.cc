@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/io/text.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -25,6 +26,34 @@ std::optional<T> parse_number(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+struct CodePoint {
+  std::uint32_t value = 0;  // 0: no UTF-8
+  std::size_t num_bytes = 1;
+};
+
+/// Overlong forms and surrogates are no UTF-8. `text` is not empty.
+CodePoint first_code_point(std::span<const char> text) {
+  const auto byte = [&](std::size_t i) { return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i])); };
+  const std::uint32_t lead = byte(0);
+  if (lead < 0x80) return {lead, 1};
+  const std::size_t num_bytes = lead >= 0xc2 && lead < 0xe0 ? 2 : (lead & 0xf0U) == 0xe0 ? 3 : lead >= 0xf0 && lead < 0xf5 ? 4 : 1;
+  if (num_bytes == 1 || text.size() < num_bytes) return {};
+  std::uint32_t value = lead & (0x7fU >> num_bytes);
+  for (std::size_t i = 1; i < num_bytes; ++i) {
+    if ((byte(i) & 0xc0U) != 0x80) return {};
+    value = value << 6U | (byte(i) & 0x3fU);
+  }
+  constexpr std::array<std::uint32_t, 5> kSmallest = {0, 0, 0x80, 0x800, 0x10000};
+  const bool is_fine = value >= kSmallest[num_bytes] && value <= 0x10ffff && (value < 0xd800 || value > 0xdfff);
+  return is_fine ? CodePoint{value, num_bytes} : CodePoint{};
+}
+
+bool is_harmless(std::uint32_t c) {
+  const auto is_in = [c](std::uint32_t first, std::uint32_t last) { return c >= first && c <= last; };
+  if (c < 0xa0) return is_in(' ', '~');
+  return !is_in(0x200b, 0x200f) && !is_in(0x2028, 0x202e) && !is_in(0x2060, 0x206f) && c != 0x061c && c != 0xfeff;
 }
 
 bool is_digits(std::string_view text) { return text.find_first_not_of("0123456789") == std::string_view::npos; }
@@ -137,12 +166,18 @@ std::string in_double_quotes(std::string_view text, bool is_ascii) {
   return result + "\"";
 }
 
+void make_printable(std::span<char> text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const CodePoint point = first_code_point(text.subspan(i));
+    if (!is_harmless(point.value)) std::fill_n(text.begin() + static_cast<std::ptrdiff_t>(i), point.num_bytes, '?');
+    i += point.num_bytes;
+  }
+}
+
 std::string in_quotes(std::string_view text) {
   constexpr std::size_t kMaxLength = 40;
-  std::string result = "'";
-  for (const char c : text.substr(0, kMaxLength)) result += static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
-  if (text.size() > kMaxLength) result += "...";
-  return result + "'";
+  const std::string shown = printable(std::string(text.substr(0, kMaxLength)));
+  return "'" + shown + (text.size() > kMaxLength ? "...'" : "'");
 }
 
 }  // namespace camloc

@@ -44,7 +44,15 @@ using StampedRowReader = std::function<Status(std::int64_t stamp_ns, std::span<c
 /// In double quotes, as TOML and JSON want a text: quotes, backslashes and control characters are escaped. `is_ascii`: so are all bytes
 /// that are no ASCII, as if they were Latin-1 (paths may hold any).
 [[nodiscard]] std::string in_double_quotes(std::string_view text, bool is_ascii = false);
-/// Text from outside, fit for a one-line message: quoted, cut at 40 characters, control characters replaced.
+/// Text from outside, fit for a terminal and for one line: what may drive a terminal or reorder a line becomes '?', byte by byte.
+/// That is control characters, C1 ones in UTF-8 (U+009B starts an escape sequence, too), line separators, marks that turn the direction
+/// of writing, and all bytes that are no UTF-8.
+void make_printable(std::span<char> text);
+[[nodiscard]] inline std::string printable(std::string text) {
+  make_printable(text);
+  return text;
+}
+/// Text from outside, fit for a one-line message: quoted, cut at 40 bytes, printable.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
 }  // namespace camloc

@@ -65,9 +65,27 @@ TEST(Text, StampedRowsAreNumbersInOrderOfTime) {
   EXPECT_EQ(message_of("2 2 3\n1 2 3\n"), "a.txt:2: stamp is before the one above it; sort the file by time");
 }
 
+TEST(Text, NothingPrintableDrivesATerminal) {
+  EXPECT_EQ(printable("a b~\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80"), "a b~\xc3\xa4\xe2\x82\xac\xf0\x9f\x98\x80");
+  EXPECT_EQ(printable("\x1b]0;x\x07\x7f\t\n"), "?]0;x????");
+  EXPECT_EQ(printable("\xc2\x9b"
+                      "2J \xc2\xa0"),
+            "??2J \xc2\xa0")
+      << "CSI as UTF-8";
+  EXPECT_EQ(printable("\x9b"
+                      "2J"),
+            "?2J")
+      << "CSI as a byte";
+  EXPECT_EQ(printable("\xe2\x80\xae.\xe2\x80\xa8.\xe2\x81\xa6.\xef\xbb\xbf"), "???.???.???.???") << "turns, breaks, isolates";
+  EXPECT_EQ(printable("\xc0\x9b.\xe0\x80\x9b.\xed\xa0\x80.\xf4\x90\x80\x80.\xe2\x82"), "??.???.???.????.??")
+      << "overlong, no character, cut";
+  EXPECT_EQ(printable(std::string("\0a", 2)), "?a");
+}
+
 TEST(Text, MessagesStayOnOneLine) {
   EXPECT_EQ(in_quotes("a\nb"), "'a?b'");
   EXPECT_LT(in_quotes(std::string(500, 'x')).size(), 60U);
+  EXPECT_EQ(in_quotes(std::string(39, 'x') + "\xc3\xa4"), "'" + std::string(39, 'x') + "?...'") << "half a character";
   EXPECT_EQ(line_error("file.txt", 3, "bad").message(), "file.txt:3: bad");
 }
 

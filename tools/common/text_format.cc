@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/common/text_format.h"
 
-#include <algorithm>
 #include <cstdarg>
 #include <cstdio>
 
@@ -37,12 +36,6 @@ void append_text(std::string* text, const char* format, ...) {
   va_start(arguments, format);
   append_arguments(text, format, arguments);
   va_end(arguments);
-}
-
-std::string printable(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }, '?');
-  return text;
 }
 
 }  // namespace camloc::tools

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <string>
 
+#include "core/io/text.h"
+
 namespace camloc::tools {
 
 [[nodiscard, gnu::format(printf, 1, 2)]] std::string text_of(const char* format, ...);
@@ -17,8 +19,7 @@ namespace camloc::tools {
 /// What %llu takes.
 [[nodiscard]] constexpr unsigned long long llu(std::uint64_t value) { return value; }
 
-/// Control characters, which a name or a message may hold, become '?'.
-[[nodiscard]] std::string printable(std::string text);
+using camloc::printable;
 
 [[nodiscard]] inline double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
