@@ -112,6 +112,7 @@ std::string control_reply(const DaemonStatus& status) {
   json.add("latency_p50_ms", status.latency_p50_ms);
   json.add("latency_max_ms", status.latency_max_ms);
   json.add("rss_bytes", status.rss_bytes);
+  json.add("log_lines_lost", status.log_lines_lost);
   json.add("is_calibration_suspect", status.is_calibration_suspect);
   json.add("focal_scale", status.focal_scale);
   json.add("coarse_state", status.coarse_state);

@@ -2,14 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/log.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdarg>
 #include <cstdio>
+#include <cstring>
+#include <span>
 
+#include "core/io/text.h"
 #include "daemon/clock.h"
+#include "daemon/standard_streams.h"
 
 namespace camloc {
 namespace {
@@ -32,18 +34,31 @@ void Log::write(LogLevel level, const char* format, ...) {
     return;
   }
   std::array<char, 1024> text{};
-  if (num_suppressed_ > 0) {
-    std::snprintf(text.data(), text.size(), "%llu lines held back", static_cast<unsigned long long>(num_suppressed_));
-    write_line(LogLevel::kWarning, text.data());
-    num_suppressed_ = 0;
-  }
   va_list arguments;
   va_start(arguments, format);
   std::vsnprintf(text.data(), text.size(), format, arguments);
   va_end(arguments);
+  const std::span<char> line(text.data(), std::strlen(text.data()));
   std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  write_line(level, text.data());
+      line.begin(), line.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  make_printable(line);
+  if (!say_what_is_missing() || !write_line(level, text.data())) ++num_lost_;
+}
+
+// True when nothing is missing, too.
+bool Log::say_what_is_missing() {
+  std::array<char, 128> text{};
+  if (num_suppressed_ > 0) {
+    std::snprintf(text.data(), text.size(), "%llu lines held back", static_cast<unsigned long long>(num_suppressed_));
+    if (!write_line(LogLevel::kWarning, text.data())) return false;
+    num_suppressed_ = 0;
+  }
+  if (num_lost_ > num_lost_told_) {
+    std::snprintf(text.data(), text.size(), "%lld lines lost, nobody took them", static_cast<long long>(num_lost_ - num_lost_told_));
+    if (!write_line(LogLevel::kWarning, text.data())) return false;
+    num_lost_told_ = num_lost_;
+  }
+  return true;
 }
 
 bool Log::take_token() {
@@ -55,13 +70,12 @@ bool Log::take_token() {
   return true;
 }
 
-void Log::write_line(LogLevel level, const char* text) {
+bool Log::write_line(LogLevel level, const char* text) {
   std::array<char, 1100> line{};
   const int length = use_priority_prefix_
                          ? std::snprintf(line.data(), line.size(), "<%d>%s\n", static_cast<int>(level), text)
                          : std::snprintf(line.data(), line.size(), "camlocd: %s: %s\n", kNames[static_cast<std::size_t>(level)], text);
-  // Nobody to tell when stderr is gone.
-  [[maybe_unused]] const ssize_t written = ::write(fd_, line.data(), static_cast<std::size_t>(std::max(length, 0)));
+  return write_without_waiting(fd_, {line.data(), static_cast<std::size_t>(std::max(length, 0))});
 }
 
 }  // namespace camloc

@@ -4,16 +4,17 @@
 // camlocd: reads its command line and configuration, then runs the service. Exit codes: 0 done, 1 failed, 2 usage or
 // configuration.
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/io/text.h"
 #include "daemon/config.h"
 #include "daemon/service.h"
 #include "daemon/service_setup.h"
+#include "daemon/standard_streams.h"
 #include "drivers/sources.h"
 
 namespace {
@@ -42,11 +43,10 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.footer(kExamples);
 }
 
-int refuse(camloc::Status status, int code) {
-  std::string line = status.message();
-  std::replace_if(
-      line.begin(), line.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-  std::fprintf(stderr, "camlocd: %s\n", line.c_str());
+int refuse(const camloc::Status& status, int code) {
+  constexpr std::size_t kMaxLine = 4000;  // what a pipe takes as a whole
+  const std::string line = camloc::printable("camlocd: " + status.message()).substr(0, kMaxLine) + "\n";
+  [[maybe_unused]] const bool was_read = camloc::write_without_waiting(2, line);
   return code;
 }
 
@@ -69,6 +69,7 @@ int serve(const camloc::Config& config, const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  camloc::guard_standard_streams();
   Arguments arguments;
   CLI::App app("Localizes a depth camera in a mapped building and publishes its pose over LCM.", "camlocd");
   declare(app, arguments);

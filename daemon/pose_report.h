@@ -52,6 +52,7 @@ struct DaemonStatus {
   const char* coarse_state = "off";  ///< of the neural network: off, or see to_string(CoarsePhase)
   std::int64_t coarse_answers = 0;   ///< of it since the map was opened
   std::int64_t fixes_by_hint = 0, fixes_by_retrieval = 0, fixes_by_coarse = 0;  ///< poses that were not tracked: who said where to look
+  std::int64_t log_lines_lost = 0;  ///< nobody read them, or the disk is full; the control socket alone tells
   bool is_calibration_suspect = false;
   double focal_scale = 1;  ///< true / assumed focal length
 };

@@ -330,6 +330,7 @@ void Service::refresh_counters() {
   board_.counters().coarse_state = coarse_ ? to_string(coarse_->phase()) : "off";
   board_.counters().coarse_answers = coarse_ ? coarse_->num_answers() : 0;
   board_.counters().reset_counter = std::int64_t{reset_offset_} + num_resets_;
+  board_.counters().log_lines_lost = log_.num_lost();
 }
 
 // Twice as often as asked for, and only while things move; see ProgressWatch.

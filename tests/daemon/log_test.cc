@@ -76,6 +76,39 @@ TEST_F(LogTest, FloodIsHeldBackAndCounted) {
   EXPECT_NE(written().find("lines held back"), std::string::npos);
 }
 
+TEST_F(LogTest, WhatDrivesATerminalIsMarked) {
+  Log log(LogLevel::kInfo, write_end_.get(), true);
+  log.write(LogLevel::kInfo, "map %s", "\x1b[2J\x9b\xc3\xa4");
+  EXPECT_EQ(written(), "<6>map ?[2J?\xc3\xa4\n");
+}
+
+/// A pipe that blocks, filled to the last byte, as a reader that stopped leaves it.
+TEST_F(LogTest, AFullPipeLosesLinesAndThenSaysHowMany) {
+  ASSERT_EQ(::fcntl(write_end_.get(), F_SETPIPE_SZ, 8192), 8192);
+  while (::write(write_end_.get(), "x", 1) == 1) {}
+  ASSERT_EQ(::fcntl(write_end_.get(), F_SETFL, 0), 0);
+  Log log(LogLevel::kInfo, write_end_.get(), true);
+  for (int i = 0; i < 3; ++i) log.write(LogLevel::kInfo, "lost");
+  EXPECT_EQ(log.num_lost(), 3);
+  static_cast<void>(written());
+  log.write(LogLevel::kInfo, "again");
+  EXPECT_EQ(written(), "<4>3 lines lost, nobody took them\n<6>again\n");
+  log.write(LogLevel::kInfo, "more");
+  EXPECT_EQ(written(), "<6>more\n");
+  EXPECT_EQ(log.num_lost(), 3);
+}
+
+TEST_F(LogTest, AClosedPipeAndAFullDiskLoseLines) {
+  read_end_.reset();
+  Log to_nobody(LogLevel::kInfo, write_end_.get(), true);
+  to_nobody.write(LogLevel::kInfo, "lost");  // SIGPIPE would end this test
+  EXPECT_EQ(to_nobody.num_lost(), 1);
+  const UniqueFd full(::open("/dev/full", O_WRONLY | O_CLOEXEC));
+  Log to_full(LogLevel::kInfo, full.get(), true);
+  to_full.write(LogLevel::kInfo, "lost");
+  EXPECT_EQ(to_full.num_lost(), 1);
+}
+
 TEST(RepeatFilterTest, OnlyNewTextsPass) {
   RepeatFilter filter;
   EXPECT_TRUE(filter.is_new("a"));

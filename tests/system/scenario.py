@@ -121,7 +121,7 @@ class Manager:
 class Daemon:
     """camlocd with settings given as section__key=value."""
 
-    def __init__(self, folder, environment=None, **settings):
+    def __init__(self, folder, environment=None, stderr=subprocess.PIPE, closes_stderr=False, **settings):
         self.folder = pathlib.Path(folder)
         self.socket = self.folder / "control.sock"
         self.config = self.folder / "camlocd.toml"
@@ -132,8 +132,10 @@ class Daemon:
         command = [CAMLOCD, "--config", str(self.config)]
         for key, value in values.items():
             command += ["--set", f"{key.replace('__', '.')}={value}"]
-        self.process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env={**os.environ, **(environment or {})})
-        self.log = Lines(self.process.stderr)
+        if closes_stderr:
+            command = ["sh", "-c", 'exec "$@" 2>&-', "sh", *command]
+        self.process = subprocess.Popen(command, stderr=stderr, text=True, env={**os.environ, **(environment or {})})
+        self.log = Lines(self.process.stderr or [])
 
     def wait_started(self):
         self.log.wait_for("started")
