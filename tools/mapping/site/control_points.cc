@@ -12,6 +12,7 @@
 
 #include "core/io/file_bytes.h"
 #include "core/io/text.h"
+#include "tools/mapping/site/table_row.h"
 
 namespace camloc::mapping {
 namespace {
@@ -21,39 +22,6 @@ constexpr double kMaxSigma = 100;
 constexpr std::size_t kMaxNameBytes = 63;
 constexpr std::size_t kMaxLines = 10'000;
 constexpr std::size_t kMaxFileBytes = std::size_t{16} << 20;
-
-using Row = std::vector<std::string_view>;
-
-std::string_view unquoted(std::string_view field) {
-  field = trimmed(field);
-  const bool is_quoted = field.size() >= 2 && field.front() == field.back() && (field.front() == '"' || field.front() == '\'');
-  return is_quoted ? trimmed(field.substr(1, field.size() - 2)) : field;
-}
-
-/// A '#' inside of a word is part of a name.
-std::string_view without_comment(std::string_view line) {
-  for (std::size_t i = 1; i < line.size(); ++i) {
-    if (line[i] == '#' && (line[i - 1] == ' ' || line[i - 1] == '\t')) return trimmed(line.substr(0, i));
-  }
-  return line;
-}
-
-/// The most particular separator in the line; all of them where that leaves fewer than `min_fields`.
-Row split_row(std::string_view line, std::size_t min_fields) {
-  line = without_comment(line);
-  Row row;
-  for (const char separator : {';', '\t', ','}) {
-    if (line.find(separator) == std::string_view::npos) continue;
-    for (const std::string_view field : split_fields(line, std::string_view(&separator, 1))) {
-      if (!unquoted(field).empty()) row.push_back(unquoted(field));
-    }
-    if (row.size() >= min_fields) return row;
-    row.clear();
-    break;
-  }
-  for (const std::string_view field : split_fields(line, " \t,;")) row.push_back(unquoted(field));
-  return row;
-}
 
 std::string lower_case(std::string_view text) {
   std::string lower(text);
@@ -208,14 +176,16 @@ Result<std::vector<ControlPoint>> parse_control_points(std::string_view text, co
   std::vector<ControlPoint> points;
   std::map<std::string, int> line_of_name;
   Columns columns = {0, 1, 2, 3, 4};
+  std::string buffer;
   for (const TextLine& line : lines) {
-    const Row row = split_row(line.text, 4);
+    const Row row = split_row(line.text, 4, &buffer);
     if (&line == &lines.front()) {
       if (const std::optional<Columns> titles = columns_of_titles(row)) {
         columns = *titles;
         continue;
       }
     }
+    if (row.size() > 4 && has_split_name(line.text, row)) return line_error(file_name, line.number, kSplitNameAdvice);
     const Result<ControlPoint> point = parse_point(RowReader(file_name, line.number, row), row, columns, line.number);
     if (!point) return point.status();
     const auto [known, is_new] = line_of_name.emplace(point->name, line.number);
@@ -234,8 +204,9 @@ Result<std::vector<ControlObservation>> parse_control_observations(std::string_v
   const std::vector<TextLine> lines = content_lines(text);
   if (const Status status = check_number_of_lines(lines.size(), file_name, "observation"); !status) return status;
   std::vector<ControlObservation> observations;
+  std::string buffer;
   for (const TextLine& line : lines) {
-    const Row row = split_row(line.text, 3);
+    const Row row = split_row(line.text, 3, &buffer);
     const Result<ControlObservation> observation = parse_observation(RowReader(file_name, line.number, row), row, line.number);
     if (!observation) return observation.status();
     observations.push_back(*observation);

@@ -7,8 +7,8 @@
 // Observed file, any number of lines for a name:            name map x y z [sigma_m]          picked in an export of the map
 //                                                           name landmark INDEX [sigma_m]     a landmark of the map
 //                                                           name pixel FRAME u v [sigma_px]   a pixel of a recorded frame
-// '#' starts a comment. Fields are separated by blanks, or by ';', tabs or ',' (then names may hold blanks). A first line of
-// column titles (name, x/easting, y/northing, z/height, sigma) gives the points file another order of columns.
+// '#' starts a comment. Fields are separated by blanks, or by ';', tabs or ',' (then names may hold blanks; see table_row.h). A first line
+// of column titles (name, x/easting, y/northing, z/height, sigma) gives the points file another order of columns.
 //
 // How a bundle adjustment takes pixels: measure_pixel() where the frame is at hand, and the PixelMeasurement's normalized
 // coordinates and depth are an observation of the control point's landmark; or resolve_observations() with its own poses.
@@ -126,7 +126,7 @@ struct ObservedPoint {
 [[nodiscard]] std::vector<ObservedPoint> average_measurements(const std::vector<PointMeasurement>& measurements);
 
 /// A control point known in the map and in a cloud: a line "name map_x map_y map_z cloud_x cloud_y cloud_z [sigma]" of a text file,
-/// metres, '#' comments.
+/// metres, separated and commented as a points file; a first line without numbers is titles.
 struct ControlPair {
   std::string name;
   Eigen::Vector3d p_map, p_cloud;

@@ -6,22 +6,31 @@
 #include "core/io/file_bytes.h"
 #include "core/io/text.h"
 #include "tools/mapping/site/control_points.h"
+#include "tools/mapping/site/table_row.h"
 
 namespace camloc::mapping {
 namespace {
 
 constexpr std::size_t kMaxFileBytes = std::size_t{16} << 20;
+constexpr std::size_t kMinFields = 7;
 
 }  // namespace
 
 Result<std::vector<ControlPair>> parse_point_pairs(std::string_view text, const std::string& path) {
   std::vector<ControlPair> pairs;
-  for (const TextLine& line : content_lines(text)) {
-    const auto fields = split_fields(line.text);
-    if (fields.size() != 7 && fields.size() != 8) {
-      return line_error(
-          path, line.number,
-          "has " + std::to_string(fields.size()) + " fields; 'name map_x map_y map_z cloud_x cloud_y cloud_z [sigma]' has 7 or 8");
+  std::string buffer;
+  const std::vector<TextLine> lines = content_lines(text);
+  const int first_line = lines.empty() ? 0 : lines.front().number;
+  for (const TextLine& line : lines) {
+    const Row fields = split_row(line.text, kMinFields, &buffer);
+    const bool has_numbers =
+        std::any_of(fields.begin(), fields.end(), [](std::string_view field) { return parse_double(field).has_value(); });
+    if (line.number == first_line && !has_numbers) continue;  // titles
+    if (fields.size() > kMinFields && has_split_name(line.text, fields)) return line_error(path, line.number, kSplitNameAdvice);
+    if (fields.size() != kMinFields && fields.size() != kMinFields + 1) {
+      return line_error(path, line.number,
+                        "has " + std::to_string(fields.size()) + (fields.size() == 1 ? " field" : " fields") +
+                            "; 'name map_x map_y map_z cloud_x cloud_y cloud_z [sigma]' has 7 or 8");
     }
     ControlPair pair;
     pair.name = std::string(fields[0]);
