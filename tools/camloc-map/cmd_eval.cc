@@ -34,7 +34,8 @@ struct EvalArguments {
   std::string map_path, lidar_path, points_path, trajectory_path, reference_trajectory_path, camera_path, out_dir;
   PosedFramesRequest reference;
   std::uint64_t frame_step = 5;
-  double lidar_unit_m = 1, voxel_m = 0.01;
+  std::optional<double> lidar_unit_m;
+  double voxel_m = 0.01;
   EvaluationOptions options;
   bool is_json = false;
 };
@@ -141,6 +142,10 @@ Status evaluate(const EvalArguments& arguments, const MapView& map, EvalSummary*
   summary->cloud_name = is_scan ? arguments.lidar_path : arguments.reference.sequence;
   summary->num_read = cloud.value().num_read;
   summary->num_invalid = cloud.value().num_invalid;
+  summary->unit_m = cloud.value().unit_m;
+  summary->unit_from = is_scan ? cloud.value().unit_from : "";
+  summary->cloud_notes = cloud.value().notes;
+  summary->cloud_warnings = cloud.value().warnings;
   summary->num_points = cloud.value().points_m.size();
   summary->voxel_m = arguments.voxel_m;
   summary->min_observations = arguments.options.min_observations;
@@ -186,9 +191,11 @@ int run(const EvalArguments& arguments) {
 }
 
 void add_reference_options(CLI::App* command, EvalArguments* arguments) {
-  command->add_option("--lidar", arguments->lidar_path, "Scan to compare with: PLY, PCD, LAS, or text (XYZ, PTS, CSV)");
-  const std::map<std::string, double> units{{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"ft", 0.3048}};
-  command->add_option("--lidar-unit", arguments->lidar_unit_m, "Unit of the scan: m, cm, mm, ft (default m)")
+  command->add_option("--lidar", arguments->lidar_path, "Scan to compare with: PLY, PCD, LAS, PTX, or text (XYZ, PTS, CSV)");
+  const std::map<std::string, double> units{{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"ft", 0.3048}, {"us-ft", 1200.0 / 3937.0}};
+  command
+      ->add_option("--lidar-unit", arguments->lidar_unit_m,
+                   "Unit of the scan: m, cm, mm, ft, us-ft (default: what a LAS file says, else m)")
       ->transform(CLI::CheckedTransformer(units));
   command->add_option("--reference-sequence", arguments->reference.sequence,
                       "Instead of a scan: recording whose depth images and poses make a dense cloud (TUM RGB-D or 7-Scenes)");

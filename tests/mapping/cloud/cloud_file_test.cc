@@ -25,6 +25,31 @@ TEST(CloudFile, SaysHowToConvertWhatItDoesNotRead) {
   expect_error(read_cloud("/", {}), ErrorCode::kInvalid, "folder");
 }
 
+/// A wall of 200 points in steps of 3 cm, in another place.
+template <typename T>
+std::string ply_wall(const char* type, double easting, double northing) {
+  std::string bytes = std::string("ply\nformat binary_little_endian 1.0\nelement vertex 200\n") + "property " + type + " x\nproperty " +
+                      type + " y\nproperty " + type + " z\nend_header\n";
+  for (int i = 0; i < 200; ++i) {
+    put(&bytes, static_cast<T>(easting + 0.031 * i));
+    put(&bytes, static_cast<T>(northing + 0.017 * i));
+    put(&bytes, static_cast<T>(521 + 0.011 * i));
+  }
+  return bytes;
+}
+
+TEST(CloudFile, RefusesCoordinatesInStairs) {
+  expect_error(read(ply_wall<float>("float", 692345, 5334567), "a.ply"), ErrorCode::kInvalid, "steps of 0.5 m");
+  // Written with double precision afterwards, what the floats had lost is not back.
+  expect_error(read(ply_wall<float>("float", 40000, 300000), "a.ply"), ErrorCode::kInvalid, "around y = 300001");
+  EXPECT_TRUE(read(ply_wall<double>("double", 692345, 5334567), "a.ply")->warnings.empty());
+  EXPECT_TRUE(read(ply_wall<float>("float", 10, 20), "a.ply")->warnings.empty());
+  const auto noted = read(ply_wall<float>("float", 40, 40000), "a.ply");
+  ASSERT_TRUE(noted.is_ok()) << noted.status().message();
+  ASSERT_EQ(noted->warnings.size(), 1U);
+  EXPECT_NE(noted->warnings[0].find("steps of 0.0039 m"), std::string::npos) << noted->warnings[0];
+}
+
 TEST(CloudFile, TakesUnits) {
   CloudOptions options;
   options.unit_m = 0.001;

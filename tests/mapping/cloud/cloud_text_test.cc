@@ -26,6 +26,29 @@ TEST(CloudText, ReadsTextTables) {
   }
 }
 
+TEST(CloudText, ReadsDecimalCommasWhereBlanksSeparate) {
+  for (const char* table : {"1,5\t-2,25\t0,5\n2,0\t4,0\t8,0\n-3,125\t0,0\t1,0\n", "x y z\n1,5 -2,25 0,5 17\n2 4 8 17\n-3,125 0 1,0 17",
+                            "3\n1,5 -2,25 0,5 -12 1 2 3\n2 4 8 -9 1 2 3\n-3,125 0 1 0 0 0 0\n"}) {
+    SCOPED_TRACE(table);
+    const auto cloud = read(table, "a.txt");
+    expect_points(cloud, kPoints);
+    ASSERT_EQ(cloud->notes.size(), 1U);
+    EXPECT_NE(cloud->notes[0].find("decimal"), std::string::npos);
+  }
+}
+
+TEST(CloudText, TakesACommaForASeparatorAsSoonAsOneLineHasItSo) {
+  expect_points(read("1.5, -2.25, 0.5\n2, 4, 8\n-3.125, 0, 1\n", "a.txt"), kPoints);
+  expect_points(read("1.5,-2.25,0.5 255 0 0\n2,4,8 255 0 0\n-3.125,0,1 255 0 0\n", "a.txt"), kPoints);
+  expect_error(read("5,334,567.12 1,250.00 3.00\n5,334,568.12 1,250.00 3.00\n", "a.txt"), ErrorCode::kInvalid, "thousands");
+}
+
+TEST(CloudText, ReadsPtsOfSeveralScans) {
+  expect_points(read("2\n1.5 -2.25 0.5 1 0 0 0\n2 4 8 1 0 0 0\n1\n-3.125 0 1 1 0 0 0\n", "a.pts"), kPoints);
+  expect_error(read("2\n1.5 -2.25 0.5 1 0 0 0\n2 4 8 1 0 0 0\n2\n-3.125 0 1 1 0 0 0\n", "a.pts"), ErrorCode::kCorrupt, "promises 4");
+  expect_error(read("2\n1.5 -2.25 0.5\n1\n2 4 8\n", "a.pts"), ErrorCode::kInvalid, "a.pts:3");
+}
+
 TEST(CloudText, RefusesBadText) {
   expect_error(read("1 2 3\n4 5\n", "a.xyz"), ErrorCode::kInvalid, "a.xyz:2");
   expect_error(read("1 2 3\nhello you there\n", "a.xyz"), ErrorCode::kInvalid, "a.xyz:2");

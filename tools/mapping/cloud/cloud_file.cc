@@ -9,11 +9,14 @@
 #include <fstream>
 
 #include "core/io/text.h"
+#include "tools/common/text_format.h"
 #include "tools/mapping/cloud/cloud_input.h"
 #include "tools/mapping/cloud/point_cloud.h"
 
 namespace camloc::mapping {
 namespace {
+
+constexpr double kNotedStepM = 0.002, kMaxStepM = 0.01;  // a scanner's noise is a few millimetres
 
 struct Reader {
   Status (*read)(CloudInput*, CloudAccumulator*);
@@ -46,9 +49,24 @@ Result<Reader> choose_reader(CloudInput* input) {
   if (start.starts_with("LASF")) return Reader{read_las};
   if (start.starts_with("ply\n") || start.starts_with("ply\r")) return Reader{read_ply};
   if (start.starts_with("# .PCD") || start.starts_with("VERSION") || extension == ".pcd") return Reader{read_pcd};
+  if (is_text(start) && is_ptx(start)) return Reader{read_ptx};
+  if (extension == ".ptx") return input->error(ErrorCode::kInvalid, "is no PTX: columns, rows, position, axes and a 4x4 matrix come first");
   if (is_text(start) && extension != ".ply" && extension != ".las") return Reader{read_text_cloud};
   return input->error(ErrorCode::kUnsupported,
-                      "is no kind of point cloud that is known here; PLY, PCD, LAS and text tables (XYZ, PTS, CSV) are read");
+                      "is no kind of point cloud that is known here; PLY, PCD, LAS, PTX and text tables (XYZ, PTS, CSV) are read");
+}
+
+/// Coordinates of a country in 32-bit floats are stairs; nothing measured on them is worth anything.
+Status check_steps(const CloudInput& input, PointCloud* cloud) {
+  Eigen::Index axis = 0;
+  const double step_m = cloud->step_m.maxCoeff(&axis);
+  if (step_m < kNotedStepM) return Status::ok();
+  const std::string what =
+      tools::text_of("coordinates around %c = %.0f hold no more than 32-bit floats do: steps of %.2g m. Export it with %s", "xyz"[axis],
+                     cloud -> origin_m[axis] / cloud -> unit_m, step_m, "double precision, or shifted to an origin near the site");
+  if (step_m > kMaxStepM) return input.error(ErrorCode::kInvalid, what);
+  cloud->warnings.push_back("STEPS: " + what);
+  return Status::ok();
 }
 
 template <typename T>
@@ -106,6 +124,7 @@ Result<PointCloud> read_cloud(std::istream& stream, const std::string& name, con
   if (cloud.points_m.empty()) {
     return input.error(ErrorCode::kInvalid, "none of its " + std::to_string(cloud.num_read) + " points is valid (not finite, or withheld)");
   }
+  if (Status steps = check_steps(input, &cloud); !steps.is_ok()) return steps;
   return cloud;
 }
 

@@ -79,6 +79,15 @@ struct RecordAxes {
     return {at(0), at(1), at(2)};
   }
 };
+/// What a LAS file says of its unit; 0: not said. Horizontal and vertical may differ.
+struct LasUnit {
+  double horizontal_m = 0, vertical_m = 0;
+  bool is_geographic = false;  ///< x and y are degrees
+  std::string source;          ///< "US survey feet (GeoKey 3076)", of the horizontal one
+};
+/// From the variable length records between header and points, each with its head; what makes no sense is passed over.
+[[nodiscard]] LasUnit las_unit(std::span<const std::byte> records, std::uint32_t num_records);
+
 /// x, y and z from these columns of a line; nothing where one is missing or no number.
 [[nodiscard]] std::optional<Eigen::Vector3d> parse_point(const std::vector<std::string_view>& fields,
                                                          const std::array<std::size_t, 3>& columns);
@@ -90,10 +99,16 @@ struct RecordAxes {
 [[nodiscard]] Status read_ply(CloudInput* input, CloudAccumulator* cloud);
 /// PCD 0.7 (Point Cloud Library): ascii, binary, binary_compressed; fields x, y, z of any type.
 [[nodiscard]] Status read_pcd(CloudInput* input, CloudAccumulator* cloud);
-/// LAS 1.0 to 1.4, point formats 0 to 10, uncompressed. Points marked as withheld are counted as invalid.
+/// LAS 1.0 to 1.4, point formats 0 to 10, uncompressed. Points marked as withheld are counted as invalid. The unit is that of its
+/// GeoKeys or WKT (las_unit.cc); longitude and latitude are refused.
 [[nodiscard]] Status read_las(CloudInput* input, CloudAccumulator* cloud);
-/// A point a line: x, y, z and what else there is, separated by blanks, commas or semicolons (with semicolons a comma may be the
-/// decimal sign). Comments with #, // or %; a header line may name the columns; PTS files start with the number of points.
+/// Leica PTX: one scan or several, each with a matrix that takes its points to the site. "0 0 0" is a ray without return: invalid.
+[[nodiscard]] Status read_ptx(CloudInput* input, CloudAccumulator* cloud);
+/// True where a file that begins so is a PTX: two lines with a whole number each, then three numbers.
+[[nodiscard]] bool is_ptx(std::string_view start);
+/// A point a line: x, y, z and what else there is, separated by blanks, commas or semicolons. Where semicolons, or blanks and tabs
+/// alone, separate, a comma between digits is the decimal sign. Comments with #, // or %; a header line may name the columns; PTS
+/// files start every scan with the number of its points.
 [[nodiscard]] Status read_text_cloud(CloudInput* input, CloudAccumulator* cloud);
 
 }  // namespace camloc::mapping

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // LAS ("LAS specification 1.4 - R15", ASPRS, 2019). Coordinates are 32-bit integers with a scale and an offset.
+#include <algorithm>
 #include <array>
 
 #include "core/base/checked.h"
@@ -79,6 +80,16 @@ bool is_withheld(int point_format, std::span<const std::byte> record) {
   return point_format < 6 ? (flags & 0x80) != 0 : (flags & 0x04) != 0;
 }
 
+/// Takes the input to the end of the records that it reads, at most kMaxRead bytes of them.
+LasUnit read_unit(CloudInput* input, std::span<const std::byte> header_bytes, const Header& header) {
+  const auto header_size = number_at<std::size_t>(header_bytes, 94, ScalarType::kUint16);
+  const auto num_records = number_at<std::uint32_t>(header_bytes, 100, ScalarType::kUint32);
+  if (num_records == 0 || header_size < kMinHeaderBytes || header_size >= header.points_offset) return {};
+  if (!input->skip(header_size)) return {};
+  const auto size = std::min<std::uint64_t>({header.points_offset - header_size, input->remaining(), CloudInput::kMaxRead});
+  return las_unit(input->read(static_cast<std::size_t>(size)), num_records);
+}
+
 }  // namespace
 
 Status read_las(CloudInput* input, CloudAccumulator* cloud) {
@@ -88,7 +99,19 @@ Status read_las(CloudInput* input, CloudAccumulator* cloud) {
   if (!header.is_ok()) return header.status();
   const Header& h = header.value();
   if (const Status checked = check(*input, h); !checked.is_ok()) return checked;
-  if (!input->skip(h.points_offset)) return input->truncated("the points are missing");
+  const LasUnit unit = read_unit(input, bytes, h);
+  if (unit.is_geographic && cloud->takes_declared_unit()) {
+    return input->error(ErrorCode::kInvalid,
+                        "x and y are longitude and latitude in degrees; project it: pdal translate IN.las OUT.las "
+                        "reprojection --filters.reprojection.out_srs=EPSG:25832, or what your site uses");
+  }
+  double vertical = 1;  // units of z in units of x and y
+  if (unit.horizontal_m > 0) cloud->declare_unit(unit.horizontal_m, unit.source);
+  if (unit.horizontal_m > 0 && unit.vertical_m > 0 && cloud->takes_declared_unit()) vertical = unit.vertical_m / unit.horizontal_m;
+  if (vertical != 1) cloud->note("heights have another unit than the plane, " + std::to_string(unit.vertical_m) + " m, as the file says");
+  if (input->position() < h.points_offset && !input->skip(h.points_offset - input->position())) {
+    return input->truncated("the points are missing");
+  }
   const RecordAxes axes{{ScalarType::kInt32, ScalarType::kInt32, ScalarType::kInt32}, {0, 4, 8}};
   for (std::uint64_t i = 0; i < h.num_points; ++i) {
     const auto record = input->read(h.record_bytes);
@@ -97,7 +120,9 @@ Status read_las(CloudInput* input, CloudAccumulator* cloud) {
       cloud->add_invalid();
       continue;
     }
-    cloud->add(axes.point(record.data()).cwiseProduct(h.scale) + h.offset);
+    Eigen::Vector3d p = axes.point(record.data()).cwiseProduct(h.scale) + h.offset;
+    p.z() *= vertical;
+    cloud->add(p);
   }
   return Status::ok();
 }

@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t kPointsForOrigin = 4096;  // their median: an invalid return at (0, 0, 0) may come first
 constexpr std::size_t kCompactAt = std::size_t{1} << 20;
-constexpr double kMaxCells = 1e9;  // from the origin; fits 32 bits
+constexpr std::uint64_t kPointsForStep = 100;  // fewer may be round numbers by chance
+constexpr double kMaxCells = 1e9;              // from the origin; fits 32 bits
 constexpr double kMaxReachM = 1e7;
 constexpr std::size_t kMaxPercentileSamples = 200000;
 
@@ -37,11 +38,27 @@ std::vector<Eigen::Vector3f> to_float(std::span<const Eigen::Vector3d> points) {
   return result;
 }
 
-CloudAccumulator::CloudAccumulator(const CloudOptions& options) : options_(options), compact_at_(kCompactAt) {}
+CloudAccumulator::CloudAccumulator(const CloudOptions& options) : options_(options), compact_at_(kCompactAt) {
+  cloud_.unit_m = options.unit_m.value_or(1);
+  cloud_.unit_from = options.unit_m ? "as given" : "assumed, the file does not say";
+}
+
+void CloudAccumulator::declare_unit(double unit_m, const std::string& source) {
+  if (takes_declared_unit()) {
+    cloud_.unit_m = unit_m;
+    cloud_.unit_from = "the file says " + source;
+  } else if (std::abs(unit_m / cloud_.unit_m - 1) > 1e-7) {
+    warn("UNIT: " + std::to_string(cloud_.unit_m) + " m a unit was asked for, and the file says " + source + "; is the option right?");
+  }
+}
 
 void CloudAccumulator::add(const Eigen::Vector3d& p) {
   ++cloud_.num_read;
-  const Eigen::Vector3d p_m = options_.unit_m * p;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double value = p[static_cast<Eigen::Index>(axis)];
+    exceeds_float_[axis] = exceeds_float_[axis] || value != static_cast<double>(static_cast<float>(value));
+  }
+  const Eigen::Vector3d p_m = cloud_.unit_m * p;
   if (!p_m.allFinite()) {
     ++cloud_.num_invalid;
   } else if (is_started_) {
@@ -100,9 +117,21 @@ void CloudAccumulator::compact() {
   compact_at_ = kept + std::max(kCompactAt, kept / 2);
 }
 
+Eigen::Vector3d CloudAccumulator::float_steps_m() const {
+  Eigen::Vector3d steps_m = Eigen::Vector3d::Zero();
+  if (cloud_.num_read - cloud_.num_invalid < kPointsForStep) return steps_m;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const auto value = static_cast<float>(std::abs(cloud_.origin_m[axis] / cloud_.unit_m));
+    if (exceeds_float_[static_cast<std::size_t>(axis)] || !(value < std::numeric_limits<float>::max())) continue;
+    steps_m[axis] = cloud_.unit_m * static_cast<double>(std::nextafter(value, std::numeric_limits<float>::max()) - value);
+  }
+  return steps_m;
+}
+
 PointCloud CloudAccumulator::finish() {
   if (!is_started_) start();
   compact();
+  cloud_.step_m = float_steps_m();
   PointCloud cloud = std::move(cloud_);
   cloud.points_m.reserve(voxels_.size());
   for (const Voxel& voxel : voxels_) {

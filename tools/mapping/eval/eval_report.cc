@@ -17,6 +17,13 @@ double percent(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
+std::vector<std::string> all_warnings(const EvalSummary& s) {
+  std::vector<std::string> warnings = s.cloud_warnings;
+  const std::vector<std::string> more = warnings_of(s.evaluation);
+  warnings.insert(warnings.end(), more.begin(), more.end());
+  return warnings;
+}
+
 void append_inputs(const EvalSummary& s, std::string* text) {
   const Evaluation& e = s.evaluation;
   append_text(text, "%-22s%s\n", "map", s.map_path.c_str());
@@ -25,6 +32,8 @@ void append_inputs(const EvalSummary& s, std::string* text) {
   append_text(text, "%-22s%s\n", "cloud", s.cloud_name.c_str());
   append_text(text, "%-22s%llu read, %llu of them invalid, %llu kept (voxel %.3g m)\n", "points", llu(s.num_read), llu(s.num_invalid),
               llu(s.num_points), s.voxel_m);
+  if (!s.unit_from.empty()) append_text(text, "%-22s%.10g m (%s)\n", "unit", s.unit_m, s.unit_from.c_str());
+  for (const std::string& note : s.cloud_notes) append_text(text, "%-22s%s\n", "note", note.c_str());
 }
 
 void append_alignment(const EvalSummary& s, std::string* text) {
@@ -128,7 +137,7 @@ std::string format_table(const EvalSummary& s) {
   append_scale(s.evaluation, &text);
   for (const std::string& file : s.files) append_text(&text, "%-22s%s\n", "written", file.c_str());
   append_text(&text, "%-22s%.1f s\n", "time", s.seconds);
-  for (const std::string& warning : warnings_of(s.evaluation)) append_text(&text, "WARNING %s\n", warning.c_str());
+  for (const std::string& warning : all_warnings(s)) append_text(&text, "WARNING %s\n", warning.c_str());
   return text;
 }
 
@@ -139,8 +148,8 @@ std::string format_json(const EvalSummary& s) {
   json["map"] = s.map_path;
   json["landmarks"] = {{"total", e.num_landmarks}, {"used", e.num_used}, {"min_observations", s.min_observations}};
   json["keyframes"] = e.num_keyframes;
-  json["cloud"] = {
-      {"name", s.cloud_name}, {"read", s.num_read}, {"invalid", s.num_invalid}, {"kept", s.num_points}, {"voxel_m", s.voxel_m}};
+  json["cloud"] = {{"name", s.cloud_name}, {"read", s.num_read}, {"invalid", s.num_invalid}, {"kept", s.num_points},
+                   {"voxel_m", s.voxel_m}, {"unit_m", s.unit_m}, {"unit_from", s.unit_from}, {"notes", s.cloud_notes}};
   json["alignment"] = alignment_json(e);
   json["distances"] = {{"landmark_to_point", to_json(d.point)},         {"landmark_to_surface", to_json(d.plane)},
                        {"all_landmarks_to_point", to_json(d.all)},      {"cell_to_landmark", to_json(d.cells)},
@@ -153,7 +162,7 @@ std::string format_json(const EvalSummary& s) {
                    {"map_extent_m", json_of(d.map_extent_m)},
                    {"cloud_extent_m", json_of(d.cloud_extent_m)},
                    {"volume_ratio", d.volume_ratio()}};
-  json["warnings"] = warnings_of(e);
+  json["warnings"] = all_warnings(s);
   json["files"] = s.files;
   return tools::json_text(json);
 }

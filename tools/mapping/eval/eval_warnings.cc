@@ -31,6 +31,16 @@ void warn_about_scale(const Evaluation& e, std::vector<std::string>* warnings) {
   }
 }
 
+/// Feet look like a building of three storeys; only where the map does not fit they are worth a word.
+void warn_about_feet(const Evaluation& e, std::vector<std::string>* warnings) {
+  const CloudDistances& d = e.distances;
+  const double ratio = d.cloud_extent_m.minCoeff() / std::max(d.map_extent_m.minCoeff(), 0.1);
+  const double share_outside = static_cast<double>(d.num_outside) / static_cast<double>(std::max<std::uint64_t>(1, e.num_used));
+  if (!(ratio > 2.8 && ratio < 3.8 && (share_outside > 0.2 || d.plane.median_m > 0.05))) return;
+  warnings->push_back(text_of(
+      "UNIT: the cloud is %.1f times as high as the map, and the map does not fit; is the cloud in feet (--lidar-unit ft)?", ratio));
+}
+
 void warn_about_points(const Evaluation& e, std::vector<std::string>* warnings) {
   std::vector<double> sizes;
   for (const PointResidual& r : e.residuals) sizes.push_back(r.aligned_m.norm());
@@ -73,6 +83,7 @@ void warn_about_alignment(const Evaluation& e, std::vector<std::string>* warning
 std::vector<std::string> warnings_of(const Evaluation& evaluation) {
   std::vector<std::string> warnings;
   warn_about_scale(evaluation, &warnings);
+  warn_about_feet(evaluation, &warnings);
   warn_about_points(evaluation, &warnings);
   warn_about_alignment(evaluation, &warnings);
   return warnings;

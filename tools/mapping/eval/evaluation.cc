@@ -45,11 +45,18 @@ Eigen::Vector3d extent_of(const std::vector<Eigen::Vector3d>& points) {
 /// Scanners and CAD programs like millimetres.
 Status check_unit(const std::vector<Eigen::Vector3d>& points, const PointCloud& cloud) {
   const auto bounds = cloud.bounds_m();
-  const double cloud_m = (bounds[1] - bounds[0]).norm(), map_m = extent_of(points).norm();
-  if (!(cloud_m > 300 * map_m && cloud_m < 5000 * map_m && cloud_m > 1000)) return Status::ok();
-  return {ErrorCode::kInvalid,
-          text_of("the cloud is %.0f m wide and the map %.1f m: the cloud seems to be in millimetres; say so with --lidar-unit mm", cloud_m,
-                  map_m)};
+  const Eigen::Vector3d cloud_box = bounds[1] - bounds[0], map_box = extent_of(points);
+  const double cloud_m = cloud_box.norm(), map_m = map_box.norm();
+  const auto seems = [&](const char* unit, const char* option) {
+    return Status(ErrorCode::kInvalid,
+                  text_of("the cloud is %.0f m wide and the map %.1f m: the cloud seems to be in %s; say so with --lidar-unit %s", cloud_m,
+                          map_m, unit, option));
+  };
+  if (cloud_m > 300 * map_m && cloud_m < 5000 * map_m && cloud_m > 1000) return seems("millimetres", "mm");
+  // A site may well be a hundred times wider than the map of one flat, but it is not a hundred times higher.
+  const double height = cloud_box.minCoeff(), height_ratio = height / std::max(map_box.minCoeff(), 0.1);
+  if (height > 100 && height_ratio > 30 && height_ratio < 300 && cloud_m > 30 * map_m) return seems("centimetres", "cm");
+  return Status::ok();
 }
 
 std::vector<PointPair> pairs_of(const std::vector<ControlPair>& controls, const Eigen::Vector3d& origin_m) {

@@ -101,6 +101,9 @@ void add_depth_image(const RgbdCamera& camera, ImageView<std::uint16_t> depth, c
 struct EvalSummary {
   std::string map_path, cloud_name;
   std::uint64_t num_read = 0, num_invalid = 0, num_points = 0;  ///< of the cloud
+  double unit_m = 1;                                            ///< of the cloud
+  std::string unit_from;                                        ///< who says so
+  std::vector<std::string> cloud_notes, cloud_warnings;         ///< of reading it
   double voxel_m = 0;
   std::uint32_t min_observations = 0;
   Evaluation evaluation;
@@ -111,7 +114,8 @@ struct EvalSummary {
 [[nodiscard]] std::string format_table(const EvalSummary& summary);
 [[nodiscard]] std::string format_json(const EvalSummary& summary);
 
-/// What to be careful about: one line each, that begins with a word in capitals: SCALE, VOLUME, POINTS, START, OVERLAP, SLIDING, ICP.
+/// What to be careful about: one line each, that begins with a word in capitals: SCALE, VOLUME, UNIT, POINTS, START, OVERLAP,
+/// SLIDING, ICP.
 [[nodiscard]] std::vector<std::string> warnings_of(const Evaluation& evaluation);
 
 /// Landmark-to-point distances in steps of 2.5 mm up to 10 cm and the rest, with mean, median and 95th percentile.
