@@ -55,6 +55,7 @@ Json record_json(const Localization& result) {
           {"integrity_risk", result.integrity_risk},
           {"protection", result.has_pose ? protection_json(result.protection) : Json(nullptr)},
           {"tracked", result.is_tracked},
+          {"proposed_by", result.proposed_by},
           {"features", result.num_features},
           {"visible", result.evidence.num_visible},
           {"matches", result.evidence.num_matches},
@@ -138,7 +139,7 @@ Status localize(const LocalizeArguments& arguments) {
   const std::uint64_t num_frames = run->source->info().num_frames.value_or(0);
   std::uint64_t num_done = 0;
   const auto process = [&](const Frame& frame) {
-    log.add(run->localizer->process(frame), !arguments.json_path.empty());
+    log.add(run->localize(frame), !arguments.json_path.empty());
     observer.show("frame", ++num_done, num_frames, std::to_string(log.trajectory.poses.size()) + " localized");
   };
   const auto counts = read_perturbed_frames(*run, process, observer);
@@ -173,6 +174,9 @@ void add_localize_command(CLI::App& app, int& exit_code) {
                    "Change every image first; may be repeated. gamma=0.5, contrast=0.6, exposure=0.4 (factors), noise=12 (sigma, grey "
                    "levels), blur=9 (pixels)")
       ->allow_extra_args(false);
+  command->add_option(
+      "--coarse", arguments->run.coarse_path,
+      "Coarse model of the map (camloc train), asked about lost frames: its answer is there with the next one, in --mode single at once");
   command->add_option("--json", arguments->json_path, "Also write one record per frame to this file");
   command->add_flag("!--no-depth", arguments->run.use_depth, "Ignore measured depth");
   command->footer(

@@ -122,7 +122,8 @@ Status wakeup(const WakeupArguments& arguments) {
   if (!truth) return truth.status();
   const auto truth_at = [&truth](std::int64_t stamp_ns) { return pose_at(truth->poses, stamp_ns); };
 
-  WakeupRun wakeups(*run->map, run->camera, run->localizer_options, truth_at, arguments.wakeup, *run->source->info().num_frames);
+  WakeupRun wakeups(*run->map, run->camera, run->localizer_options, truth_at, arguments.wakeup, *run->source->info().num_frames,
+                    run->coarse.get());
   TerminalObserver observer;
   std::uint64_t num_done = 0;
   const auto counts = read_perturbed_frames(
@@ -167,6 +168,8 @@ void add_wakeup_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(0.001, kMaxSeconds))
       ->capture_default_str();
   command->add_option("--frames", arguments->run.frames, "Frames to use: start:stop:step[,...], as Python slices (default: all)");
+  command->add_option("--coarse", arguments->run.coarse_path,
+                      "Coarse model of the map (camloc train), asked about lost frames: its answer is there with the next one");
   command->add_option("--set", arguments->run.numbers, "For experiments: localizer.NAME=VALUE; an unknown NAME lists them all");
   command->add_flag("!--no-depth", arguments->run.use_depth, "Ignore measured depth");
   command->add_flag("--json", arguments->is_json, "Print JSON, with a record for each start");

@@ -16,6 +16,7 @@ namespace camloc::tools {
 void add_localize_command(CLI::App& app, int& exit_code);
 void add_wakeup_command(CLI::App& app, int& exit_code);
 void add_eval_command(CLI::App& app, int& exit_code);
+void add_coarse_command(CLI::App& app, int& exit_code);  ///< info and eval; train is the program camloc-train
 void add_epipolar_command(CLI::App& app, int& exit_code);
 void add_map_command(CLI::App& app, int& exit_code);  ///< info and verify; build is the program camloc-map
 void add_monitor_command(CLI::App& app, int& exit_code);

@@ -17,9 +17,9 @@
 namespace camloc::tools {
 namespace {
 
-constexpr std::array kCommands{&add_localize_command, &add_wakeup_command, &add_eval_command,   &add_epipolar_command,
-                               &add_map_command,      &add_camera_command, &add_record_command, &add_monitor_command,
-                               &add_ctl_command,      &add_doctor_command, &add_frames_command};
+constexpr std::array kCommands{&add_localize_command, &add_wakeup_command, &add_eval_command,   &add_coarse_command,
+                               &add_epipolar_command, &add_map_command,    &add_camera_command, &add_record_command,
+                               &add_monitor_command,  &add_ctl_command,    &add_doctor_command, &add_frames_command};
 /// A command of which a part is built in and the rest is in the program camloc-NAME.
 struct SplitCommand {
   std::vector<std::string> built_in, in_program;

@@ -143,7 +143,16 @@ Result<SequenceRun> open_sequence_run(const SequenceRunOptions& options) {
   run.localizer_options.use_depth = options.use_depth;
   run.localizer_options.now_ns = options.clock != nullptr ? options.clock : monotonic_ns;
   run.localizer = std::make_unique<Localizer>(*run.map, run.camera, run.localizer_options);
+  if (options.coarse_path.empty()) return run;
+  auto coarse = CoarseAsking::open(options.coarse_path, *run.map, run.camera);
+  if (!coarse) return coarse.status();
+  run.coarse = std::move(*coarse);
   return run;
+}
+
+const Localization& SequenceRun::localize(const Frame& frame) {
+  if (!coarse) return localizer->process(frame);
+  return localizer_options.use_tracking ? coarse->process(frame, localizer.get()) : coarse->process_single(frame, localizer.get());
 }
 
 Result<FrameCounts> read_perturbed_frames(SequenceRun& run, const std::function<void(const Frame&)>& on_frame,

@@ -14,6 +14,7 @@
 #include "core/map/map_view.h"
 #include "drivers/frame_source.h"
 #include "tools/common/frame_reading.h"
+#include "tools/evaluation/coarse_asking.h"
 
 namespace camloc::tools {
 
@@ -39,6 +40,7 @@ struct SequenceRunOptions {
   bool use_depth = true;
   std::vector<std::string> perturbations;
   StageTimer::Clock clock = nullptr;  ///< of stage times; monotonic_ns where there is none
+  std::string coarse_path;            ///< coarse model that is asked about lost frames, empty for none
   std::vector<std::string> numbers;   ///< "localizer.NAME=VALUE", for experiments
 };
 
@@ -50,6 +52,10 @@ struct SequenceRun {
   std::vector<Perturbation> perturbations;
   LocalizerOptions localizer_options;
   std::unique_ptr<Localizer> localizer;
+  std::unique_ptr<CoarseAsking> coarse;  ///< where there is a model
+
+  /// The localizer's answer for the next frame, with the help of the model.
+  const Localization& localize(const Frame& frame);
 };
 
 /// Nanoseconds of a monotonic clock, for LocalizerOptions::now_ns.

@@ -31,7 +31,9 @@ double quantile(std::vector<double>& values, double fraction) {
   return values[below] + (position - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
-ErrorStatistics statistics(std::vector<double> values) {
+}  // namespace
+
+ErrorStatistics error_statistics(std::vector<double> values) {
   if (values.empty()) return {};
   ErrorStatistics out;
   out.mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -42,8 +44,6 @@ ErrorStatistics statistics(std::vector<double> values) {
   out.max = values.back();
   return out;
 }
-
-}  // namespace
 
 Result<RecordedPoses> read_recorded_poses(const std::string& path, const std::string& frames, const std::optional<Rigid3>& T_color_depth) {
   if (!std::filesystem::is_directory(path)) {
@@ -117,14 +117,14 @@ TrajectoryErrors compare(const EstimatedTrajectory& estimate, const ReferencePos
     all_nees.push_back(squared_mahalanobis(error, rotate_covariance(T.rotation, *pose.covariance)));
   }
   for (double& share : errors.share_within) share = num_frames == 0 ? 0.0 : share / static_cast<double>(num_frames);
-  errors.translation_m = statistics(translations);
-  errors.rotation_deg = statistics(rotations);
+  errors.translation_m = error_statistics(translations);
+  errors.rotation_deg = error_statistics(rotations);
   errors.num_with_covariance = all_nees.size();
   if (!all_nees.empty()) {
     const auto inside = std::count_if(all_nees.begin(), all_nees.end(), [](double value) { return value <= kChiSquare95; });
     errors.share_inside_95 = static_cast<double>(inside) / static_cast<double>(all_nees.size());
-    errors.nees_mean = statistics(all_nees).mean;
-    errors.nees_median = statistics(all_nees).median;
+    errors.nees_mean = error_statistics(all_nees).mean;
+    errors.nees_median = error_statistics(all_nees).median;
   }
   return errors;
 }

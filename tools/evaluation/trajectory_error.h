@@ -36,6 +36,9 @@ struct ErrorStatistics {
   double median = 0, mean = 0, rmse = 0, p90 = 0, max = 0;
 };
 
+/// Zeros without values.
+[[nodiscard]] ErrorStatistics error_statistics(std::vector<double> values);
+
 /// "Within 5cm/5deg" and so on; the share is of all frames.
 struct ErrorLimit {
   const char* name;

@@ -12,11 +12,12 @@
 namespace camloc::tools {
 
 WakeupRun::WakeupRun(const MapView& map, const RgbdCamera& camera, const LocalizerOptions& localizer, ReferencePose reference,
-                     const WakeupOptions& options, std::uint64_t num_frames)
+                     const WakeupOptions& options, std::uint64_t num_frames, CoarseAsking* coarse)
     : map_(&map),
       camera_(camera),
       localizer_options_(localizer),
       reference_(std::move(reference)),
+      coarse_(coarse),
       duration_ns_(static_cast<std::int64_t>(options.seconds * 1e9)) {
   const std::uint64_t count = std::min(options.count, num_frames);
   for (std::uint64_t i = 0; i < count; ++i) starts_.insert(i * num_frames / count);
@@ -29,7 +30,10 @@ void WakeupRun::process(const Frame& frame) {
     wakeup.is_complete = frame.stamp_ns - wakeup.start_ns >= duration_ns_;
     return wakeup.is_complete;
   });
-  for (const Active& active : active_) judge(active.localizer->process(frame), &results_[active.index]);
+  for (const Active& active : active_) {
+    Localizer& localizer = *active.localizer;
+    judge(coarse_ != nullptr ? coarse_->process(frame, &localizer) : localizer.process(frame), &results_[active.index]);
+  }
 }
 
 void WakeupRun::start(const Frame& frame) {

@@ -14,6 +14,7 @@
 
 #include "core/base/frame.h"
 #include "core/localize/localizer.h"
+#include "tools/evaluation/coarse_asking.h"
 #include "tools/evaluation/trajectory_error.h"
 
 namespace camloc::tools {
@@ -41,9 +42,9 @@ struct WakeupOptions {
 /// Starts and feeds the localizers. Not thread-safe.
 class WakeupRun {
  public:
-  /// `map` and `reference` must outlive this. `num_frames`: of the recording.
+  /// `map`, `reference` and `coarse` must outlive this. `num_frames`: of the recording. `coarse`: asked about lost frames, may be null.
   WakeupRun(const MapView& map, const RgbdCamera& camera, const LocalizerOptions& localizer, ReferencePose reference,
-            const WakeupOptions& options, std::uint64_t num_frames);
+            const WakeupOptions& options, std::uint64_t num_frames, CoarseAsking* coarse = nullptr);
   /// The next frame of the recording.
   void process(const Frame& frame);
   /// In the order of their starts.
@@ -61,6 +62,7 @@ class WakeupRun {
   RgbdCamera camera_;
   LocalizerOptions localizer_options_;
   ReferencePose reference_;
+  CoarseAsking* coarse_;
   std::int64_t duration_ns_;
   std::set<std::uint64_t> starts_;  ///< frames, counted from the first that is processed
   std::uint64_t num_processed_ = 0;
