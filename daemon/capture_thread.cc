@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
 #include <utility>
 
 #include "daemon/clock.h"
@@ -74,7 +75,7 @@ void CaptureThread::Shared::run() {
   bool was_open = false;
   while (!should_stop) {
     count(&CaptureCounts::turns);
-    Result<std::unique_ptr<FrameSource>> source = open_source(options.url);
+    Result<std::unique_ptr<FrameSource>> source = open_within_memory();
     Status status = source.status();
     if (source) {
       if (was_open) count(&CaptureCounts::device_reopens);
@@ -99,6 +100,13 @@ void CaptureThread::Shared::run() {
   const std::lock_guard lock(mutex);
   is_finished = true;
   changed.notify_all();
+}
+
+// An exception that left this thread would end the daemon.
+Result<std::unique_ptr<FrameSource>> CaptureThread::Shared::open_within_memory() const {
+  try {
+    return open_source(options.url);
+  } catch (const std::exception& error) { return Status(ErrorCode::kUnavailable, options.url + ": cannot be opened: " + error.what()); }
 }
 
 // Until the source fails or ends (its status is returned), is to be opened again (ok), or a stop is asked for.
@@ -130,7 +138,11 @@ Status CaptureThread::Shared::next_frame(FrameSource& source, CapturedFrame* fra
   const std::int64_t now_ns = monotonic_ns();
   read_health(source, now_ns);
   const std::int64_t left_ms = supervisor.time_left_ns(now_ns) / 1'000'000 + 1;
-  return source.next(&frame->buffer, std::chrono::milliseconds(std::min(left_ms, kFrameTimeout_ms)));
+  try {
+    return source.next(&frame->buffer, std::chrono::milliseconds(std::min(left_ms, kFrameTimeout_ms)));
+  } catch (const std::exception& error) {  // no memory for it, or a library's own
+    return {ErrorCode::kUnavailable, options.url + ": a frame failed: " + error.what()};
+  }
 }
 
 void CaptureThread::Shared::on_frame(FrameSource& source, CapturedFrame* frame) {

@@ -104,6 +104,7 @@ class CaptureThread {
 
     void run();
     [[nodiscard]] Status stream(FrameSource& source);
+    [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_within_memory() const;
     [[nodiscard]] Status next_frame(FrameSource& source, CapturedFrame* frame);
     void on_frame(FrameSource& source, CapturedFrame* frame);
     [[nodiscard]] Status take_step(FrameSource& source, RecoveryStep step);

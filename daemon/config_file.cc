@@ -5,13 +5,10 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <memory>
 #include <optional>
 
+#include "core/io/file_bytes.h"
 #include "daemon/config.h"
 
 namespace camloc {
@@ -51,20 +48,6 @@ Status parse_section(const std::string& section, const toml::table& table, const
   return Status::ok();
 }
 
-Result<std::string> read_text(const std::string& path) {
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "re"), std::fclose);
-  const auto failed = [&] {
-    return Status(errno == ENOENT ? ErrorCode::kNotFound : ErrorCode::kIo,
-                  "cannot read configuration " + path + ": " + std::strerror(errno));
-  };
-  if (file == nullptr) return failed();
-  std::string text(kMaxFileBytes + 1, '\0');
-  text.resize(std::fread(text.data(), 1, text.size(), file.get()));
-  if (std::ferror(file.get()) != 0) return failed();
-  if (text.size() > kMaxFileBytes) return Status(ErrorCode::kInvalid, "configuration " + path + " is larger than 1 MiB");
-  return text;
-}
-
 /// Sorted by name; none when the folder does not exist.
 Result<std::vector<std::string>> drop_ins(const std::string& folder) {
   std::vector<std::string> paths;
@@ -80,8 +63,10 @@ Result<std::vector<std::string>> drop_ins(const std::string& folder) {
 }
 
 Status merge_file(const std::string& path, Config* config) {
-  const Result<std::string> text = read_text(path);
-  return text ? parse_config(*text, path, config) : text.status();
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) return {ErrorCode::kIo, "cannot read configuration " + path + ": it is a folder"};
+  const Result<std::string> text = read_file_text(path, kMaxFileBytes);  // regular files only: a named pipe would wait for a writer
+  return text ? parse_config(*text, path, config) : text.status().with_context("cannot read configuration");
 }
 
 }  // namespace

@@ -82,7 +82,7 @@ int ControlSocket::prepare_poll(std::span<pollfd> fds) {
     fds[static_cast<std::size_t>(count++)] = {client.fd.get(), events, 0};
   }
   // With all places taken new clients wait in the kernel's queue.
-  if (count < kMaxClients) fds[static_cast<std::size_t>(count++)] = {listener_.get(), POLLIN, 0};
+  if (count < kMaxClients && !is_resting_) fds[static_cast<std::size_t>(count++)] = {listener_.get(), POLLIN, 0};
   return count;
 }
 
@@ -102,18 +102,30 @@ void ControlSocket::handle(std::span<const pollfd> fds, std::int64_t now_ns, con
 }
 
 void ControlSocket::expire(std::int64_t now_ns) {
+  is_resting_ = false;
+  const std::int64_t spare_ns = is_somebody_waiting() ? kPatience_ns - kCrowded_ns : 0;
   for (Client& client : clients_) {
-    if (!client.fd.is_open() || now_ns <= client.deadline_ns) continue;
+    if (!client.fd.is_open() || now_ns + spare_ns <= client.deadline_ns) continue;
     // What it said while the daemon was busy with something else was not read yet: that is not its fault.
     if (std::exchange(client.is_overdue, true)) close_client(client);
   }
+}
+
+bool ControlSocket::is_somebody_waiting() const {
+  if (!std::all_of(clients_.begin(), clients_.end(), [](const Client& c) { return c.fd.is_open(); })) return false;
+  pollfd queue{listener_.get(), POLLIN, 0};
+  return ::poll(&queue, 1, 0) == 1;
 }
 
 void ControlSocket::accept_clients(std::int64_t now_ns) {
   for (Client& client : clients_) {
     if (client.fd.is_open()) continue;
     client.fd.reset(::accept4(listener_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
-    if (!client.fd.is_open()) return;
+    if (!client.fd.is_open()) {
+      // Out of descriptors or memory the listener stays readable, and waiting for it would never wait.
+      is_resting_ = errno != EAGAIN && errno != ECONNABORTED && errno != EINTR;
+      return;
+    }
     client.num_read = client.num_written = 0;
     client.reply.clear();
     client.is_overdue = false;

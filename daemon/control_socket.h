@@ -31,6 +31,7 @@ class ControlSocket {
   static constexpr int kMaxPollFds = kMaxClients + 1;
   static constexpr std::size_t kMaxRequest = 128;              ///< bytes of a line; more is refused
   static constexpr std::int64_t kPatience_ns = 2'000'000'000;  ///< for a client to say all and read all
+  static constexpr std::int64_t kCrowded_ns = 100'000'000;     ///< the same while others wait for a place
 
   /// Owns `path` from now on, guarded by a lock on "path.lock", so that two daemons starting at once cannot both win. A
   /// socket file that nobody listens on is replaced. Errors: kUnavailable (another daemon runs), kInvalid (the path is
@@ -43,7 +44,7 @@ class ControlSocket {
   [[nodiscard]] int prepare_poll(std::span<pollfd> fds);
   /// Accepts, reads, answers and writes whatever the entries of prepare_poll() became ready for.
   void handle(std::span<const pollfd> fds, std::int64_t now_ns, const ControlHandler& handler);
-  /// Drops the clients that took too long.
+  /// Drops the clients that took too long; where others wait for a place, those that said nothing within a tenth of a second.
   void expire(std::int64_t now_ns);
 
  private:
@@ -59,12 +60,14 @@ class ControlSocket {
 
   ControlSocket(std::string path, UniqueFd lock, UniqueFd listener);
   void accept_clients(std::int64_t now_ns);
+  [[nodiscard]] bool is_somebody_waiting() const;
   [[nodiscard]] bool read_request(Client& client, const ControlHandler& handler);
   void write_reply(Client& client);
   static void close_client(Client& client);
 
   std::string path_;
   UniqueFd lock_, listener_;
+  bool is_resting_ = false;  // no descriptor was left for a client: not before the next expire()
   std::array<Client, kMaxClients> clients_;
 };
 

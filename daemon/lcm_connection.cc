@@ -6,6 +6,7 @@
 
 #include <arpa/inet.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 
 #include <cerrno>
 #include <cstring>
@@ -29,10 +30,21 @@ Status probe_route(const std::string& url) {
           "no route for " + url + " (" + std::strerror(errno) + "); on a machine without network: ip route add 224.0.0.0/4 dev lo"};
 }
 
+/// LCM opens a log as it is, and a named pipe would wait for its reader.
+Status probe_log_file(const std::string& url) {
+  constexpr std::string_view kScheme = "file://";
+  if (!url.starts_with(kScheme)) return Status::ok();
+  const std::string path = url.substr(kScheme.size(), url.find('?') - kScheme.size());
+  struct stat info {};
+  if (::stat(path.c_str(), &info) != 0 || S_ISREG(info.st_mode)) return Status::ok();
+  return {ErrorCode::kUnavailable, url + ": is not a regular file; see publish.lcm_url"};
+}
+
 }  // namespace
 
 Result<Lcm> connect_lcm(const std::string& url) {
   if (const Status status = probe_route(url); !status) return status;
+  if (const Status status = probe_log_file(url); !status) return status;
   Lcm lcm(lcm_create(url.c_str()));
   if (!lcm) return Status(ErrorCode::kUnavailable, "LCM does not open " + url + "; see publish.lcm_url");
   return lcm;

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <string>
 #include <utility>
 #include <vector>
@@ -66,10 +67,7 @@ int serve(const camloc::Config& config, const Arguments& arguments) {
   return code;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  camloc::guard_standard_streams();
+int run(int argc, char** argv) {
   Arguments arguments;
   CLI::App app("Localizes a depth camera in a mapped building and publishes its pose over LCM.", "camlocd");
   declare(app, arguments);
@@ -88,5 +86,17 @@ int main(int argc, char** argv) {
     std::puts("OK");
     return 0;
   }
-  return serve(*config, arguments);
+  const camloc::Status has_room = camloc::check_resource_limits();
+  return has_room ? serve(*config, arguments) : refuse(has_room, 1);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  camloc::guard_standard_streams();
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {  // no memory or no thread is left
+    return refuse({camloc::ErrorCode::kIo, std::string("cannot go on: ") + error.what() + "; is a limit set (ulimit -a, LimitAS=)?"}, 1);
+  }
 }

@@ -2,11 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/map_slot.h"
 
+#include <new>
 #include <utility>
 
 namespace camloc {
 
 Status MapSlot::load(const MapSlotOptions& options, const RgbdCamera& camera) {
+  try {
+    return load_within_memory(options, camera);
+  } catch (const std::bad_alloc&) {  // the old map stays
+    return {ErrorCode::kIo, options.path + ": not enough memory for this map; is a limit set (ulimit -v, LimitAS=)?"};
+  }
+}
+
+Status MapSlot::load_within_memory(const MapSlotOptions& options, const RgbdCamera& camera) {
   struct stat file {};
   ::stat(options.path.c_str(), &file);  // before opening: a write in between is then noticed, if for nothing
   Result<MapView> view = MapView::open(options.path);

@@ -49,6 +49,8 @@ class MapSlot {
     struct stat file {};
   };
 
+  [[nodiscard]] Status load_within_memory(const MapSlotOptions& options, const RgbdCamera& camera);
+
   std::unique_ptr<Loaded> loaded_;
 };
 

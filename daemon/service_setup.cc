@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/service_setup.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 
 #include "core/coarse/coarse_network.h"
@@ -104,6 +106,17 @@ Status check_config(const Config& config, SourceTable sources, SinkTable sinks) 
   const Result<std::unique_ptr<FrameSource>> source = open_frame_source(config.source_url, {}, sources);
   if (!source) return source.status().with_context("source.url");
   return match_camera(config, *camera, (*source)->info()).status();
+}
+
+Status check_resource_limits() {
+  // Streams, events, control socket and its clients, LCM twice, a camera's many, a map being exchanged; with room for libraries.
+  constexpr rlim_t kNeeded = 64;
+  rlimit files{};
+  if (::getrlimit(RLIMIT_NOFILE, &files) != 0 || files.rlim_cur >= kNeeded) return Status::ok();
+  const rlimit wanted{std::min(kNeeded, files.rlim_max), files.rlim_max};
+  if (wanted.rlim_cur == kNeeded && ::setrlimit(RLIMIT_NOFILE, &wanted) == 0) return Status::ok();
+  return {ErrorCode::kIo, "at most " + std::to_string(files.rlim_max) + " files may be open, " + std::to_string(kNeeded) +
+                              " are needed; raise the limit (ulimit -n, LimitNOFILE=)"};
 }
 
 std::string changes_that_need_restart(const Config& from, const Config& to) {

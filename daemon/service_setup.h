@@ -33,6 +33,9 @@ namespace camloc {
 /// (map, device, network) is not looked at.
 [[nodiscard]] Status check_config(const Config& config, SourceTable sources = frame_sources(), SinkTable sinks = pose_sinks());
 
+/// Whether this process may open as many files as the daemon needs; its soft limit is raised where the hard one allows. kIo: it may not.
+[[nodiscard]] Status check_resource_limits();
+
 /// Names of settings that differ and that a reload cannot change, comma-separated; empty when there are none.
 [[nodiscard]] std::string changes_that_need_restart(const Config& from, const Config& to);
 

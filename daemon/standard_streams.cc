@@ -36,6 +36,7 @@ void open_stderr_anew() {
 
 void guard_standard_streams() {
   ::signal(SIGPIPE, SIG_IGN);
+  ::signal(SIGXFSZ, SIG_IGN);
   fill_closed_streams();
   struct stat info {};
   if (::fstat(STDERR_FILENO, &info) != 0) return;

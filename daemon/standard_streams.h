@@ -8,9 +8,10 @@
 
 namespace camloc {
 
-/// For the start of main(), before anything is opened. Ignores SIGPIPE. Descriptors 0 to 2 that are closed become /dev/null, so that no
-/// file or socket is opened in their place and written to. Where stderr is a pipe, a terminal or the journal's socket, it is made
-/// non-blocking, for libraries that print, too: as an open file of our own, so that who shares it (a shell) notices nothing.
+/// For the start of main(), before anything is opened. Ignores SIGPIPE, and SIGXFSZ (a log file at its limit of size). Descriptors 0 to 2
+/// that are closed become /dev/null, so that no file or socket is opened in their place and written to. Where stderr is a pipe, a terminal
+/// or the journal's socket, it is made non-blocking, for libraries that print, too: as an open file of our own, so that who shares it (a
+/// shell) notices nothing.
 void guard_standard_streams();
 
 /// Writes all of `line`, of at most 4096 bytes, at once or not at all, and does not wait for a reader. False when it is lost, or a part

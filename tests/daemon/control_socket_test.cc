@@ -6,6 +6,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -176,6 +177,39 @@ TEST_F(ControlSocketTest, ClientsBeyondTheLimitWait) {
   silent.clear();
   turns(4);
   EXPECT_EQ(hear(late), "{\"ok\":true}\n<eof>");
+}
+
+TEST_F(ControlSocketTest, SilentClientsMakeRoomForThoseThatWait) {
+  std::vector<UniqueFd> silent;
+  for (int i = 0; i < ControlSocket::kMaxClients; ++i) silent.push_back(connect());
+  turns(2);
+  turn(ControlSocket::kCrowded_ns + 1);
+  turn(ControlSocket::kCrowded_ns + 1);
+  EXPECT_EQ(hear(silent.front()), "") << "nobody else wants the place";
+  const UniqueFd client = connect();
+  say(client, "status\n");
+  for (int i = 0; i < 4; ++i) turn(ControlSocket::kCrowded_ns + 1);
+  EXPECT_EQ(hear(client), reply_ + "\n<eof>");
+  EXPECT_EQ(hear(silent.front()), "<eof>");
+}
+
+TEST_F(ControlSocketTest, WithoutADescriptorLeftTheLoopStillWaits) {
+  const UniqueFd client = connect();
+  say(client, "status\n");
+  rlimit old_limit{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &old_limit), 0);
+  rlimit limit = old_limit;
+  limit.rlim_cur = 3;
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &limit), 0);
+  std::array<pollfd, ControlSocket::kMaxPollFds> fds{};
+  ASSERT_EQ(socket_->prepare_poll(fds), 1);
+  fds[0].revents = POLLIN;
+  socket_->handle(std::span(fds).first(1), 0, [](const ControlRequest&) { return std::string(); });
+  EXPECT_EQ(socket_->prepare_poll(fds), 0) << "the listener is readable and cannot be served";
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &old_limit), 0);
+  socket_->expire(0);
+  turns(3);
+  EXPECT_EQ(hear(client), reply_ + "\n<eof>");
 }
 
 TEST_F(ControlSocketTest, VanishedClientIsForgotten) {

@@ -86,7 +86,7 @@ with scenario() as (folder, start, tap):
     end("full socket", daemon)
 
     # Without a stderr at all no file or socket of the daemon gets its number, and the log lines.
-    daemon = start(closes_stderr=True, stderr=subprocess.DEVNULL)
+    daemon = start(shell="exec 2>&-", stderr=subprocess.DEVNULL)
     exercise("no stderr", daemon, are_lines_lost=False)
     assert os.readlink(f"/proc/{daemon.process.pid}/fd/2") == "/dev/null"
     end("no stderr", daemon)

@@ -121,7 +121,7 @@ class Manager:
 class Daemon:
     """camlocd with settings given as section__key=value."""
 
-    def __init__(self, folder, environment=None, stderr=subprocess.PIPE, closes_stderr=False, **settings):
+    def __init__(self, folder, environment=None, stderr=subprocess.PIPE, shell="", **settings):
         self.folder = pathlib.Path(folder)
         self.socket = self.folder / "control.sock"
         self.config = self.folder / "camlocd.toml"
@@ -132,8 +132,8 @@ class Daemon:
         command = [CAMLOCD, "--config", str(self.config)]
         for key, value in values.items():
             command += ["--set", f"{key.replace('__', '.')}={value}"]
-        if closes_stderr:
-            command = ["sh", "-c", 'exec "$@" 2>&-', "sh", *command]
+        if shell:  # what is set before the daemon runs
+            command = ["sh", "-c", shell + '; exec "$@"', "sh", *command]
         self.process = subprocess.Popen(command, stderr=stderr, text=True, env={**os.environ, **(environment or {})})
         self.log = Lines(self.process.stderr or [])
 

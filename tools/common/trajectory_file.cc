@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <span>
 #include <sstream>
 
@@ -99,7 +98,9 @@ Result<EstimatedTrajectory> read_trajectory(const std::string& path) {
   auto poses = read_tum_trajectory(path);
   if (!poses) return poses.status();
   EstimatedTrajectory trajectory;
-  std::ifstream file(path);
+  const auto text = read_file_text(path);
+  if (!text) return text.status();
+  std::istringstream file(*text);
   std::optional<Matrix6d> covariance;
   std::size_t next_pose = 0;
   std::string line;
