@@ -10,6 +10,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/geometry/ar_projection.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
 #include "core/io/sequence.h"
@@ -117,6 +118,41 @@ void print_covariance(const Example& example) {
               error[4], error[5]);
 }
 
+/// The example as an engine draws it: its own matrices, and the pixel that comes out of them.
+struct DrawnExample {
+  VirtualCamera camera;
+  Vector3d p_world;
+  DrawnPoint drawn;
+
+  DrawnExample(const EngineConvention& engine, const Example& example)
+      : camera(virtual_camera(engine, example.intrinsics, example.T_map_camera, {})), p_world(engine_point(engine, example.p_map)) {
+    drawn = draw_point(engine, camera, p_world, example.intrinsics.width, example.intrinsics.height).value_or(DrawnPoint{});
+  }
+};
+
+void print_engines(const Example& example) {
+  std::printf("The same point drawn by an engine, with the projection and view that camloc makes for it (near 0.05 m, far 100 m):\n");
+  for (const EngineConvention& engine : engine_conventions()) {
+    const DrawnExample of(engine, example);
+    std::printf("  %-10s world %-52s p = [%+.2f %+.2f %+.2f]  pixel %.2f %.2f\n", engine.name, engine.world_axes, of.p_world.x(),
+                of.p_world.y(), of.p_world.z(), of.drawn.pixel.x(), of.drawn.pixel.y());
+  }
+  std::printf("  `camloc frames --engine NAME` prints the matrices.\n\n");
+}
+
+void print_engine(const EngineConvention& engine, const Example& example) {
+  const DrawnExample of(engine, example);
+  std::printf("%s: world %s; depth %g at the near plane, %g at the far one; clip y %s.\n", engine.name, engine.world_axes, engine.z_near,
+              engine.z_far, engine.is_clip_y_down ? "down" : "up");
+  std::printf("Matrices that multiply columns; in memory column by column, which is also how engines keep them that multiply rows.\n");
+  print_matrix("projection", of.camera.projection);
+  print_matrix("view", of.camera.view);
+  print_vector("p_world (units of the engine)", of.p_world);
+  const Eigen::Vector4d clip = of.camera.projection * (of.camera.view * of.p_world.homogeneous());
+  std::printf("  %-32s = [%+.4f %+.4f %+.4f %+.4f]\n", "clip = projection * view * p", clip.x(), clip.y(), clip.z(), clip.w());
+  std::printf("  %-32s = %.2f %.2f, depth %.6f\n", "pixel", of.drawn.pixel.x(), of.drawn.pixel.y(), of.drawn.depth);
+}
+
 nlohmann::json to_json(const Eigen::Matrix4d& matrix) {
   nlohmann::json rows = nlohmann::json::array();
   for (int row = 0; row < 4; ++row) rows.push_back({matrix(row, 0), matrix(row, 1), matrix(row, 2), matrix(row, 3)});
@@ -138,14 +174,22 @@ void print_json(const Example& example) {
                                                 {"is_right_handed", convention.camera_from_other.determinant() > 0},
                                                 {"p", json_of(Vector3d(convention.camera_from_other.transpose() * p_camera))}};
   }
+  for (const EngineConvention& engine : engine_conventions()) {
+    const DrawnExample of(engine, example);
+    document["engines"][engine.name] = {
+        {"world_axes", engine.world_axes}, {"projection", to_json(of.camera.projection)},       {"view", to_json(of.camera.view)},
+        {"p_world", json_of(of.p_world)},  {"pixel", {of.drawn.pixel.x(), of.drawn.pixel.y()}}, {"depth", of.drawn.depth}};
+  }
   std::printf("%s\n", document.dump(2).c_str());
 }
 
-void run(bool is_json) {
+void run(bool is_json, const std::string& engine) {
   const Example example;
+  if (!engine.empty()) return print_engine(*find_engine(engine), example);
   if (is_json) return print_json(example);
   print_transforms(example);
   print_projection(example);
+  print_engines(example);
   print_covariance(example);
 }
 
@@ -155,7 +199,11 @@ void add_frames_command(CLI::App& app, int& /*exit_code*/) {
   auto is_json = std::make_shared<bool>(false);
   CLI::App* command = app.add_subcommand("frames", "Frame conventions with a worked example");
   command->add_flag("--json", *is_json, "the numbers as JSON");
-  command->callback([is_json] { run(*is_json); });
+  auto engine = std::make_shared<std::string>();
+  std::vector<std::string> names;
+  for (const EngineConvention& of : engine_conventions()) names.emplace_back(of.name);
+  command->add_option("--engine", *engine, "The matrices of one engine")->check(CLI::IsMember(names));
+  command->callback([is_json, engine] { run(*is_json, *engine); });
 }
 
 }  // namespace camloc::tools

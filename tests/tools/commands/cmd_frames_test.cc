@@ -52,6 +52,22 @@ TEST(FramesTest, EveryConventionNamesTheSamePoint) {
   EXPECT_FALSE(conventions["Unreal"]["is_right_handed"].get<bool>());
 }
 
+TEST(FramesTest, EveryEngineDrawsThePointOnItsPixel) {
+  const json example = frames_example();
+  EXPECT_EQ(example["engines"].size(), 7U);
+  for (const auto& [name, engine] : example["engines"].items()) {
+    EXPECT_NEAR(engine["pixel"][0].get<double>(), example["pixel"][0].get<double>(), 1e-9) << name;
+    EXPECT_NEAR(engine["pixel"][1].get<double>(), example["pixel"][1].get<double>(), 1e-9) << name;
+  }
+}
+
+TEST(FramesTest, AnEnginesMatricesAreShownOrTheEnginesThereAre) {
+  const CommandOutput output = run_command(add_frames_command, {"frames", "--engine", "opengl"});
+  EXPECT_NE(output.out.find("projection"), std::string::npos) << output.out;
+  EXPECT_NE(output.out.find("= 273.41 191.74"), std::string::npos) << output.out;
+  EXPECT_EQ(run_command(add_frames_command, {"frames", "--engine", "quake"}).exit_code, 2);
+}
+
 TEST(FramesTest, TextShowsTheComputedNumbers) {
   const CommandOutput output = run_command(add_frames_command, {"frames"});
   EXPECT_EQ(output.exit_code, 0);
