@@ -104,14 +104,20 @@ const std::string& CoarseNetwork::engine() const { return impl_->engine; }
 
 Result<CoarsePose> CoarseNetwork::locate(const Frame& frame) {
   impl_->input.fill(frame, impl_->values);
-  std::array<float, kCoarseOutputSize> output{};
-  std::array<char, 200> error{};
-  if (impl_->plugin.functions->run(impl_->network, impl_->values.data(), impl_->values.size(), output.data(), output.size(), error.data(),
-                                   error.size()) != 0)
-    return Status(ErrorCode::kInvalid, impl_->engine + " does not run the network: " + error.data());
-  const std::optional<Rigid3> T_map_camera = coarse_pose(output);
+  const auto output = run(impl_->values);
+  if (!output) return output.status();
+  const std::optional<Rigid3> T_map_camera = coarse_pose(*output);
   if (!T_map_camera) return Status(ErrorCode::kInvalid, "the network's output is no pose");
   return CoarsePose{frame.stamp_ns, *T_map_camera, impl_->covariance};
+}
+
+Result<std::array<float, kCoarseOutputSize>> CoarseNetwork::run(std::span<const float> input) {
+  std::array<float, kCoarseOutputSize> output{};
+  std::array<char, 200> error{};
+  if (impl_->plugin.functions->run(impl_->network, input.data(), input.size(), output.data(), output.size(), error.data(), error.size()) !=
+      0)
+    return Status(ErrorCode::kInvalid, impl_->engine + " does not run the network: " + error.data());
+  return output;
 }
 
 }  // namespace camloc

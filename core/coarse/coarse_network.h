@@ -5,8 +5,10 @@
 // model's covariance.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,6 +45,8 @@ class CoarseNetwork {
 
   /// kInvalid where the network gives no pose. The same frame gives the same bits.
   [[nodiscard]] Result<CoarsePose> locate(const Frame& frame);
+  /// The network alone: what it makes of an input of NetworkInputLayout::size(). kInvalid where the library behind it fails.
+  [[nodiscard]] Result<std::array<float, kCoarseOutputSize>> run(std::span<const float> input);
   [[nodiscard]] const std::string& engine() const;
 
  private:

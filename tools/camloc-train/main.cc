@@ -16,6 +16,7 @@
 #include "tools/common/command_line.h"
 #include "tools/common/terminal_observer.h"
 #include "tools/common/text_format.h"
+#include "tools/training/device_check.h"
 #include "tools/training/held_out.h"
 #include "tools/training/labelled_frames.h"
 #include "tools/training/learning_curves.h"
@@ -128,7 +129,22 @@ CoarseModelInfo info_of(const TrainArguments& arguments, const MapView& map, con
   return info;
 }
 
-void print_summary(const TrainArguments& arguments, const Trainer& trainer, const Lesson& lesson) {
+/// What was written, run as the daemon runs it.
+struct DeviceCheck {
+  std::optional<double> difference;
+  std::string why_not;
+};
+Result<DeviceCheck> check_device(const TrainArguments& arguments, const RgbdCamera& camera, const Lesson& lesson, Trainer* trainer) {
+  constexpr double kMostDifference = 1e-4;
+  const auto difference = compare_with_device(arguments.out_path, camera, lesson.set, lesson.split.held_out, trainer);
+  if (!difference && difference.status().code() == ErrorCode::kNotFound) return DeviceCheck{std::nullopt, difference.status().message()};
+  if (!difference) return difference.status().with_context(arguments.out_path + " is written but does not run");
+  if (*difference <= kMostDifference) return DeviceCheck{*difference, ""};
+  return {ErrorCode::kCorrupt, arguments.out_path + " is written, but what runs it is " + tools::text_of("%.1g", *difference) +
+                                   " off what was trained; please report this with the file"};
+}
+
+void print_summary(const TrainArguments& arguments, const Trainer& trainer, const Lesson& lesson, const DeviceCheck& check) {
   const std::size_t best = *trainer.best_epoch();
   const HeldOutError& error = trainer.epochs()[best].held_out;
   double seconds = 0;
@@ -142,6 +158,7 @@ void print_summary(const TrainArguments& arguments, const Trainer& trainer, cons
         {"epochs", trainer.epochs().size()},
         {"best_epoch", best + 1},
         {"seconds", seconds},
+        {"device_difference", check.difference ? Json(*check.difference) : Json(nullptr)},
         {"held_out",
          {{"translation_m", {{"median", error.median_m}, {"mean", error.mean_m}, {"rms", error.rms_m}}},
           {"rotation_deg", {{"median", error.median_deg}, {"mean", error.mean_deg}}}}}};
@@ -153,6 +170,11 @@ void print_summary(const TrainArguments& arguments, const Trainer& trainer, cons
   std::printf("epochs      %zu of %d in %.0f s; the weights of epoch %zu are kept\n", trainer.epochs().size(), arguments.options.num_epochs,
               seconds, best + 1);
   std::printf("held out    median %.2f m %.1f deg, mean %.2f m %.1f deg\n", error.median_m, error.median_deg, error.mean_m, error.mean_deg);
+  if (check.difference) {
+    std::printf("checked     run as on the device it says the same to %.1g\n", *check.difference);
+  } else {
+    std::printf("not checked %s\n", check.why_not.c_str());
+  }
   std::printf("written     %s, learning curves in %s\n", arguments.out_path.c_str(), arguments.curves_path().c_str());
 }
 
@@ -193,7 +215,9 @@ Status train(TrainArguments arguments) {
   observer.show("", 0, 0, "");
   if (!trainer.best_epoch()) return {ErrorCode::kIo, "interrupted before the first epoch was over; nothing was written"};
   if (Status status = write_results(arguments, *map, *camera, layout, *lesson, &trainer); !status) return status;
-  print_summary(arguments, trainer, *lesson);
+  const auto check = check_device(arguments, *camera, *lesson, &trainer);
+  if (!check) return check.status();
+  print_summary(arguments, trainer, *lesson, *check);
   const bool is_whole = static_cast<int>(trainer.epochs().size()) == arguments.options.num_epochs;
   if (!is_whole) {
     std::printf("interrupted after %zu of %d epochs: what was best so far is written; the same command with --resume goes on\n",
