@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "core/coarse/library_pages.h"
 #include "core/coarse/network_plugin.h"
 
 namespace camloc {
@@ -49,10 +50,15 @@ struct CoarseNetwork::Impl {
         values(input.size()) {}
   ~Impl() {
     if (network != nullptr) plugin.functions->destroy(network);
-    ::malloc_trim(0);
+    give_back();
   }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
+  /// Memory that only starting or ending took.
+  void give_back() const {
+    ::malloc_trim(0);
+    give_back_library_pages(plugin.library.get());
+  }
   [[nodiscard]] Status create(const CoarseModel& model);
 
   LoadedPlugin plugin;
@@ -91,7 +97,7 @@ Result<CoarseNetwork> CoarseNetwork::load(const CoarseModel& model, const RgbdCa
   if (!plugin) return plugin.status();
   auto impl = std::make_unique<Impl>(std::move(*plugin), model.info, camera);
   if (Status status = impl->create(model); !status) return status;
-  ::malloc_trim(0);  // reading a network takes several times its size, which would stay for as long as it is loaded
+  impl->give_back();  // reading a network takes several times its size, which would stay for as long as it is loaded
   return CoarseNetwork(std::move(impl));
 }
 

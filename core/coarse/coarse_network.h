@@ -31,8 +31,8 @@ struct CoarsePose {
 /// Whether there is one to load: kNotFound says which package has it.
 [[nodiscard]] Status check_network_plugin(const std::string& path = network_plugin_path());
 
-/// Movable; belongs to one thread at a time. Loads the plug-in and the network at construction, gives both back at destruction. What
-/// the libraries behind the plug-in keep for themselves stays as clean pages of their files.
+/// Movable; belongs to one thread at a time. Loads the plug-in and the network at construction, gives both back at destruction. The
+/// libraries behind the plug-in stay mapped, because the loader cannot unload them; what they hold in memory is given back.
 class CoarseNetwork {
  public:
   /// Errors: kNotFound (no plug-in: which package has it), kUnsupported (a plug-in of another version, an operator it does not know),
