@@ -5,9 +5,12 @@
 #include "daemon/service_setup.h"
 
 #include <gtest/gtest.h>
+#include <stdlib.h>
 
 #include "core/io/camera_file.h"
 #include "drivers/sample_source.h"
+#include "tests/coarse/sample_model.h"
+#include "tests/daemon/sample_map.h"
 #include "tests/daemon/test_folder.h"
 
 namespace camloc {
@@ -55,6 +58,22 @@ TEST(ServiceSetupTest, UnknownSchemeIsAConfigurationError) {
   EXPECT_TRUE(check_settings(sample_config("sample://")));
   EXPECT_TRUE(check_settings(sample_config("/a/folder")));
   EXPECT_TRUE(check_settings(sample_config("")));
+}
+
+TEST(ServiceSetupTest, ACoarseModelIsCheckedWithTheConfiguration) {
+  const TestFolder folder;
+  Config config = sample_config("");
+  config.map_path = folder.file("none.cmap");
+  config.coarse_cnn = folder.file("none.onnx");
+  EXPECT_NE(check_config(config).message().find("coarse.cnn: "), std::string::npos);
+  ASSERT_TRUE(write_onnx(config.coarse_cnn, sample_onnx()));
+  ::setenv("CAMLOC_NETWORK_PLUGIN", "/nowhere.so", 1);
+  EXPECT_NE(check_config(config).message().find("camloc-coarse"), std::string::npos);
+  ::setenv("CAMLOC_NETWORK_PLUGIN", "/proc/self/exe", 1);
+  EXPECT_TRUE(check_config(config)) << "a map that is missing is no fault of the model";
+  ASSERT_TRUE(testing::write_sample_map({}, config.map_path));
+  EXPECT_NE(check_config(config).message().find("is for map 00000000000000ab"), std::string::npos);
+  ::unsetenv("CAMLOC_NETWORK_PLUGIN");
 }
 
 TEST(ServiceSetupTest, LcmUrlNeedsAProvider) {

@@ -11,6 +11,7 @@
 
 #include "drivers/sample_source.h"
 #include "drivers/sources.h"
+#include "tests/coarse/sample_model.h"
 #include "tests/daemon/private_network.h"
 #include "tests/daemon/process_allocations.h"
 #include "tests/daemon/sample_map.h"
@@ -102,6 +103,22 @@ TEST_F(ServiceTest, FirstFrameOfAnotherSizeEndsItAsAConfigurationError) {
   Service service(inputs_);
   ASSERT_TRUE(service.start());
   EXPECT_EQ(service.run(), 2);
+  EXPECT_TRUE(service.stop());
+}
+
+// A coarse model of another map is said once, and the poses come all the same.
+TEST_F(ServiceTest, ACoarseModelOfAnotherMapIsDoneWithout) {
+  make_map();
+  inputs_.config.coarse_cnn = folder_.file("coarse.onnx");
+  ASSERT_TRUE(write_onnx(inputs_.config.coarse_cnn, sample_onnx()));
+  Service service(inputs_);
+  ASSERT_TRUE(service.start());
+  step_until_processed(service, 20);
+  EXPECT_GE(service.status().frames_localized, 20);
+  for (int i = 0; i < 100 && std::string_view(service.status().coarse_state) != "failed"; ++i) service.step(50);
+  EXPECT_STREQ(service.status().coarse_state, "failed");
+  EXPECT_EQ(service.status().coarse_answers, 0);
+  EXPECT_EQ(service.status().fixes_by_retrieval, 1);
   EXPECT_TRUE(service.stop());
 }
 
