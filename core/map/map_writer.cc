@@ -16,6 +16,7 @@
 #include "core/io/file_bytes.h"
 #include "core/map/landmark_codes.h"
 #include "core/map/map_format.h"
+#include "core/map/map_ranges.h"
 #include "core/map/map_sections.h"
 
 namespace camloc {
@@ -30,7 +31,9 @@ constexpr std::size_t kMaxDescriptors = 255;
 Status invalid(const std::string& reason) { return {ErrorCode::kInvalid, "cannot pack the map: " + reason}; }
 
 bool is_unit(const Eigen::Quaterniond& rotation) { return std::abs(rotation.norm() - 1) < 1e-6; }
-bool is_transform(const Rigid3& T) { return is_unit(T.rotation) && T.translation.allFinite(); }
+bool is_transform(const Rigid3& T, double largest_m = map_ranges::kMaxPosition_m) {
+  return is_unit(T.rotation) && T.translation.cwiseAbs().maxCoeff() <= largest_m && T.translation.allFinite();
+}
 
 // ---- checks
 
@@ -73,14 +76,13 @@ Status check_globals(const MapData& map) {
   if (map.name.size() >= sizeof(map_format::MetaRecord::name)) return invalid("a name of more than 63 bytes");
   if (Status status = map.camera.validate(); !status.is_ok()) return invalid(status.message());
   if (!is_transform(map.camera.T_color_depth)) return invalid("T_color_depth is no rigid transform");
-  if (!(map.pose_sigma_m >= 0 && std::isfinite(map.pose_sigma_m)) || !(map.pose_sigma_rad >= 0 && std::isfinite(map.pose_sigma_rad))) {
-    return invalid("negative or infinite pose sigma");
-  }
+  if (!map_ranges::are_pose_sigmas(map.pose_sigma_m, map.pose_sigma_rad)) return invalid("an impossible pose sigma");
   if (!(map.orb_scale_factor >= 1 && map.orb_scale_factor <= 4) || map.orb_num_levels < 1 || map.orb_num_levels > 32) {
     return invalid("impossible image pyramid");
   }
-  if (map.wcs && (!is_transform(map.wcs->T_wcs_map) || !map.wcs->covariance.allFinite())) {
-    return invalid("world coordinate system not finite");
+  if (map.wcs && (!is_transform(map.wcs->T_wcs_map, map_ranges::kMaxWcsPosition_m) ||
+                  !map_ranges::is_covariance(map.wcs->covariance, map_ranges::kMaxWcsPosition_m))) {
+    return invalid("an impossible world coordinate system");
   }
   return Status::ok();
 }

@@ -3,11 +3,13 @@
 //
 // The sections that this camloc knows, and what makes the content of each safe to use. A further section has its own file
 // with its record, its id, its check, and how its bytes are made and read; here it has one line at the end of the table.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <string>
 
 #include "core/map/landmark_codes.h"
+#include "core/map/map_ranges.h"
 #include "core/map/map_sections.h"
 
 namespace camloc {
@@ -16,11 +18,8 @@ namespace {
 Status corrupt(std::string reason) { return {ErrorCode::kCorrupt, std::move(reason)}; }
 
 template <typename Array>
-bool all_finite(const Array& values) {
-  for (const auto value : values) {
-    if (!std::isfinite(value)) return false;
-  }
-  return true;
+bool all_within(const Array& values, double largest) {
+  return std::all_of(values.begin(), values.end(), [&](auto value) { return map_ranges::is_within(value, largest); });
 }
 
 template <typename Array>
@@ -30,17 +29,17 @@ bool is_unit(const Array& values) {
   return std::abs(squared - 1) < 1e-3;  // false for NaN
 }
 
-bool is_transform(const map_format::TransformRecord& T) { return is_unit(T.rotation_wxyz) && all_finite(T.translation_m); }
+bool is_transform(const map_format::TransformRecord& T, double largest_m) {
+  return is_unit(T.rotation_wxyz) && all_within(T.translation_m, largest_m);
+}
 
 Status check_meta(const MapSections& map) {
   const map_format::MetaRecord& meta = map.meta;
   if (meta.name.back() != '\0' || meta.camera_name.back() != '\0') return corrupt("a name without end");
   if (meta.color.lens > 2 || meta.depth.lens > 2) return corrupt("unknown lens model");
   if (meta.is_depth_registered > 1 || meta.poses_are_of_depth_camera > 1) return corrupt("a flag that is neither 0 nor 1");
-  if (!is_transform(meta.T_color_depth)) return corrupt("T_color_depth is no rigid transform");
-  if (!(meta.pose_sigma_m >= 0 && std::isfinite(meta.pose_sigma_m)) || !(meta.pose_sigma_rad >= 0 && std::isfinite(meta.pose_sigma_rad))) {
-    return corrupt("negative or infinite pose sigma");
-  }
+  if (!is_transform(meta.T_color_depth, map_ranges::kMaxPosition_m)) return corrupt("T_color_depth is no rigid transform");
+  if (!map_ranges::are_pose_sigmas(meta.pose_sigma_m, meta.pose_sigma_rad)) return corrupt("an impossible pose sigma");
   if (!(meta.orb_scale_factor >= 1.01F && meta.orb_scale_factor <= 4) || meta.orb_num_levels < 1 || meta.orb_num_levels > 32) {
     return corrupt("impossible image pyramid");
   }
@@ -50,9 +49,9 @@ Status check_meta(const MapSections& map) {
 Status check_cubes(const MapSections& map) {
   std::uint64_t next_landmark = 0;
   for (const auto& cube : map.cubes) {
-    if (!all_finite(cube.origin_m) || !(cube.extent_m > 0 && std::isfinite(cube.extent_m))) {
-      return corrupt("a cube without finite place and size");
-    }
+    const bool is_in_range =
+        all_within(cube.origin_m, map_ranges::kMaxPosition_m) && map_ranges::is_within(cube.extent_m, map_ranges::kMaxPosition_m);
+    if (!is_in_range || !(cube.extent_m > 0)) { return corrupt("a cube without possible place and size"); }
     if (cube.first_landmark != next_landmark || cube.num_landmarks == 0) return corrupt("cubes with gaps or overlap");
     next_landmark += cube.num_landmarks;
   }
@@ -89,7 +88,8 @@ Status check_keyframes(const MapSections& map) {
   if (map.keyframes.size() > map_format::kMaxKeyframes) return corrupt("too many keyframes");
   std::size_t cursor = 0;
   for (const auto& keyframe : map.keyframes) {
-    if (!is_unit(keyframe.rotation_wxyz) || !all_finite(keyframe.position_m)) return corrupt("a keyframe without pose");
+    if (!is_unit(keyframe.rotation_wxyz) || !all_within(keyframe.position_m, map_ranges::kMaxPosition_m))
+      return corrupt("a keyframe without pose");
     if (Status status = check_list(map, keyframe, &cursor); !status.is_ok()) return status;
   }
   if (cursor != map.keyframe_lists.size()) return corrupt("keyframe lists with bytes left over");
@@ -118,7 +118,10 @@ Status check_inverted_file(const MapSections& map) {
 Status check_wcs(const MapSections& map) {
   if (map.wcs.empty()) return Status::ok();
   if (map.wcs.size() > 1) return corrupt("more than one world coordinate system");
-  if (!is_transform(map.wcs[0].T_wcs_map) || !all_finite(map.wcs[0].covariance)) return corrupt("wcs datum not finite");
+  const map_format::WcsRecord& datum = map.wcs[0];
+  if (!is_transform(datum.T_wcs_map, map_ranges::kMaxWcsPosition_m)) return corrupt("wcs datum at an impossible place");
+  const Matrix6d covariance = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(datum.covariance.data());
+  if (!map_ranges::is_covariance(covariance, map_ranges::kMaxWcsPosition_m)) return corrupt("wcs datum with an impossible covariance");
   return Status::ok();
 }
 

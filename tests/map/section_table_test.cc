@@ -70,6 +70,21 @@ TEST(SectionTable, RefusesImpossibleContentWithRightHashes) {
       {"inverted file", [](auto* b) { poke(b, SectionId::kWordBegin, 4, 0xFFFFFFFFU); }},
       {"inverted file", [](auto* b) { poke(b, SectionId::kInvertedKeyframes, 0, std::uint16_t{3}); }},
       {"inverted file", [](auto* b) { poke(b, SectionId::kInvertedWeights, 0, std::uint8_t{0}); }},
+      {"pose sigma", [](auto* b) { poke(b, SectionId::kMeta, 408, 1e200); }},
+      {"pose sigma", [](auto* b) { poke(b, SectionId::kMeta, 408, 1001.0); }},
+      {"pose sigma", [](auto* b) { poke(b, SectionId::kMeta, 416, 3.2); }},
+      {"bad camera", [](auto* b) { poke(b, SectionId::kMeta, 336, 2e3); }},
+      {"cube", [](auto* b) { poke(b, SectionId::kCubes, 4, -2e6F); }},
+      {"cube", [](auto* b) { poke(b, SectionId::kCubes, 12, 2e6F); }},
+      {"without pose", [](auto* b) { poke(b, SectionId::kKeyframes, 20, 2e6F); }},
+      {"impossible place", [](auto* b) { poke(b, SectionId::kWcs, 32, 2e8); }},
+      {"impossible covariance", [](auto* b) { poke(b, SectionId::kWcs, 56, -1e-9); }},
+      {"impossible covariance", [](auto* b) { poke(b, SectionId::kWcs, 56 + 8 * 35, 10.0); }},
+      {"impossible covariance",  // symmetric, with a correlation of 2
+       [](auto* b) {
+         for (int i = 0; i < 36; ++i)
+           poke(b, SectionId::kWcs, 56 + 8 * static_cast<std::size_t>(i), i % 7 == 0 ? 1.0 : i == 1 || i == 6 ? 2.0 : 0.0);
+       }},
       {"wcs", [](auto* b) { poke(b, SectionId::kWcs, 0, 2.0); }},
       {"wcs", [](auto* b) { poke(b, SectionId::kWcs, 56, std::numeric_limits<double>::infinity()); }},
   };
