@@ -45,6 +45,17 @@ Status decode_into(std::span<const std::uint8_t> bytes, const std::string& name,
   return Status::ok();
 }
 
+/// As much of the file as an image of its size can fill; what is behind (a film, another file) is not looked at.
+Status read_image_bytes(const std::string& path, std::vector<std::uint8_t>* bytes) {
+  constexpr std::size_t kHead = 1 << 20;        // holds the size, and all of most images
+  constexpr std::size_t kMaxBytesOfPixel = 10;  // four channels of 16 bits that no codec makes smaller, and its overhead
+  if (Status status = read_file_prefix(path, kHead, bytes); !status || bytes->size() < kHead) return status;
+  const Result<ImageSize> size = decode_bytes(*bytes, path, PixelKind::kGray, nullptr);
+  if (!size) return size.status();
+  const std::size_t num_pixels = static_cast<std::size_t>(size->width) * static_cast<std::size_t>(size->height);
+  return read_file_prefix(path, std::min(kMaxImageFileBytes, kHead + kMaxBytesOfPixel * num_pixels), bytes);
+}
+
 }  // namespace
 
 Status check_image_size(std::int64_t width, std::int64_t height, const std::string& name) {
@@ -75,22 +86,22 @@ Result<ImageSize> decode_image_size(std::span<const std::uint8_t> bytes, const s
 }
 
 Status ImageReader::read_gray(const std::string& path, Image<std::uint8_t>* image) {
-  Status status = read_file_bytes(path, kMaxImageFileBytes, &bytes_);
+  Status status = read_image_bytes(path, &bytes_);
   return status ? decode_gray(bytes_, path, image) : status;
 }
 
 Status ImageReader::read_depth(const std::string& path, Image<std::uint16_t>* image) {
-  Status status = read_file_bytes(path, kMaxImageFileBytes, &bytes_);
+  Status status = read_image_bytes(path, &bytes_);
   return status ? decode_depth(bytes_, path, image) : status;
 }
 
 Result<ColorImage> ImageReader::read_color(const std::string& path) {
-  if (Status status = read_file_bytes(path, kMaxImageFileBytes, &bytes_); !status) return status;
+  if (Status status = read_image_bytes(path, &bytes_); !status) return status;
   return decode_color(bytes_, path);
 }
 
 Result<ImageSize> ImageReader::read_size(const std::string& path) {
-  if (Status status = read_file_bytes(path, kMaxImageFileBytes, &bytes_); !status) return status;
+  if (Status status = read_image_bytes(path, &bytes_); !status) return status;
   return decode_image_size(bytes_, path);
 }
 

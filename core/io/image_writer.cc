@@ -14,17 +14,25 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <span>
 #include <system_error>
 #include <vector>
 
 // jpeglib.h needs size_t and FILE from the lines above.
 #include <jpeglib.h>
 
+#include "core/io/file_bytes.h"
+
 namespace camloc {
 
 namespace {
 
+/// A file is replaced as a whole. A device is written to as it is.
 Status write_bytes(const std::string& path, const void* data, std::size_t size) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored) || std::filesystem::is_regular_file(path, ignored))
+    return replace_file(path, std::span(static_cast<const std::byte*>(data), size), false);
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (file == nullptr) return {ErrorCode::kIo, path + ": " + std::generic_category().message(errno)};
   const bool is_written = std::fwrite(data, 1, size, file) == size;

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/io/image_file.h"
 
+#include <filesystem>
+#include <random>
+
 #include "tests/drivers/test_folder.h"
 #include "tests/io/image_messages.h"
 
@@ -22,6 +25,35 @@ TEST(ImageFile, OnePixelHigh) {
   }
   Image<std::uint16_t> depth;
   EXPECT_TRUE(reader.read_depth(folder / "d.png", &depth).is_ok());
+}
+
+// Sparse files: only who reads them to their end pays for their size.
+TEST(ImageFile, ATailOfAnySizeIsNotRead) {
+  const TestFolder folder;
+  ASSERT_TRUE(write_png(folder / "a.png", smooth_color(32, 24)));
+  ASSERT_TRUE(write_jpeg(folder / "a.jpg", smooth_color(32, 24)));
+  ASSERT_TRUE(write_depth_png(folder / "d.png", ramp_depth(32, 24)));
+  for (const char* name : {"a.png", "a.jpg", "d.png"}) std::filesystem::resize_file(folder / name, std::uintmax_t{1} << 40);
+  ImageReader reader;
+  Image<std::uint8_t> gray;
+  Image<std::uint16_t> depth;
+  EXPECT_TRUE(reader.read_gray(folder / "a.png", &gray).is_ok());
+  EXPECT_TRUE(reader.read_gray(folder / "a.jpg", &gray).is_ok());
+  EXPECT_TRUE(reader.read_depth(folder / "d.png", &depth).is_ok());
+}
+
+TEST(ImageFile, AnImageOfManyBytesIsReadToItsEnd) {
+  const TestFolder folder;
+  std::mt19937 random(1);
+  Image<std::uint16_t> noise;
+  noise.resize(1000, 1000);
+  for (std::uint16_t& value : noise.pixels) value = static_cast<std::uint16_t>(random());
+  ASSERT_TRUE(write_depth_png(folder / "d.png", noise));
+  ASSERT_GT(std::filesystem::file_size(folder / "d.png"), 1'500'000U);
+  Image<std::uint16_t> depth;
+  ImageReader reader;
+  ASSERT_TRUE(reader.read_depth(folder / "d.png", &depth).is_ok());
+  EXPECT_EQ(depth.pixels, noise.pixels);
 }
 
 TEST(ImageFile, TruncatedAnywhereIsAnError) {

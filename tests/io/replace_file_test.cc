@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The new bytes or the old ones, and nothing else in the folder.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "core/base/unique_fd.h"
 #include "core/io/file_bytes.h"
 #include "tests/drivers/test_folder.h"
 
@@ -60,6 +63,70 @@ TEST(ReplaceFile, FollowsASymbolicLink) {
   ASSERT_TRUE(replace_by(folder / "link", "new"));
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
   EXPECT_EQ(text_of(folder / "real"), "new");
+}
+
+TEST(ReplaceFile, ALinkWhereOthersMayWriteIsNotFollowed) {
+  const TestFolder folder;
+  folder.write("shared/x", "");
+  folder.write("victim", "precious");
+  std::filesystem::create_symlink(folder / "victim", folder / "shared/link");
+  std::filesystem::create_symlink("shared/link", folder / "mine");
+  ASSERT_EQ(::chmod((folder / "shared").c_str(), 0770), 0);
+  for (const std::string& path : {folder / "shared/link", folder / "mine"}) {
+    const Status status = replace_by(path, "new");
+    EXPECT_EQ(status.code(), ErrorCode::kIo) << path;
+    EXPECT_NE(status.message().find("symbolic link"), std::string::npos) << status.message();
+  }
+  EXPECT_EQ(text_of(folder / "victim"), "precious");
+  ASSERT_EQ(::chmod((folder / "shared").c_str(), 0750), 0);
+  EXPECT_TRUE(replace_by(folder / "mine", "new")) << "link by link, where nobody else can have put them";
+  EXPECT_EQ(text_of(folder / "victim"), "new");
+}
+
+TEST(ReplaceFile, LinksInACircleAreAnError) {
+  const TestFolder folder;
+  std::filesystem::create_symlink("b", folder / "a");
+  std::filesystem::create_symlink("a", folder / "b");
+  EXPECT_EQ(replace_by(folder / "a", "new").code(), ErrorCode::kIo);
+}
+
+TEST(ReplaceFile, TheModeOfTheOldFileStays) {
+  const TestFolder folder;
+  const std::string path = folder.write("a", "old");
+  for (const mode_t mode : {0600U, 0664U, 0444U}) {
+    ASSERT_EQ(::chmod(path.c_str(), mode), 0);
+    ASSERT_TRUE(replace_by(path, "new"));
+    struct stat info {};
+    ASSERT_EQ(::stat(path.c_str(), &info), 0);
+    EXPECT_EQ(info.st_mode & 07777U, mode);
+  }
+}
+
+TEST(ReplaceFile, TheTemporaryFileOfAWriterThatLivesIsLeftAlone) {
+  const TestFolder folder;
+  const std::string other = folder.write("a." + std::to_string(::getpid()) + ".tmp", "half");
+  const UniqueFd writer(::open(other.c_str(), O_RDONLY | O_CLOEXEC));
+  ASSERT_EQ(::flock(writer.get(), LOCK_EX), 0);
+  ASSERT_TRUE(replace_by(folder / "a", "new"));
+  EXPECT_EQ(text_of(folder / "a"), "new");
+  EXPECT_EQ(text_of(other), "half");
+}
+
+TEST(SameFile, ByInodeOrByNameInTheSameFolder) {
+  const TestFolder folder;
+  const std::string a = folder.write("a", "x");
+  folder.write("sub/b", "x");
+  std::filesystem::create_symlink("a", folder / "link");
+  std::filesystem::create_hard_link(a, folder / "hard");
+  EXPECT_TRUE(is_same_file(a, folder / "sub/../a"));
+  EXPECT_TRUE(is_same_file(a, folder / "link"));
+  EXPECT_TRUE(is_same_file(a, folder / "hard"));
+  EXPECT_FALSE(is_same_file(a, folder / "sub/b"));
+  EXPECT_FALSE(is_same_file(a, folder / "new"));
+  EXPECT_TRUE(is_same_file(folder / "new", folder / "sub/../new"));
+  EXPECT_FALSE(is_same_file(folder / "new", folder / "newer"));
+  EXPECT_FALSE(is_same_file(folder / "new", folder / "sub/new"));
+  EXPECT_FALSE(is_same_file(folder / "no/new", folder / "nowhere/new"));
 }
 
 TEST(ReplaceFile, DiskFullLeavesTheOldFile) {
