@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/memory_guard.h"
 #include "core/io/text.h"
 #include "daemon/config.h"
 #include "daemon/service.h"
@@ -94,6 +95,8 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   camloc::guard_standard_streams();
+  camloc::install_memory_guard(
+      "camlocd: out of memory; give the service more (MemoryMax, ulimit -v) or take a smaller map (map build --max-bytes)\n");
   try {
     return run(argc, argv);
   } catch (const std::exception& error) {  // no memory or no thread is left

@@ -5,11 +5,16 @@
 
 #include <CLI/CLI.hpp>
 
+#include "core/base/memory_guard.h"
 #include "core/map/mapping_guard.h"
 #include "tools/camloc-map/commands.h"
 
 int main(int argc, char** argv) {
   camloc::install_mapping_guard();
+  camloc::install_memory_guard(
+      "camloc-map: out of memory; close other programs or add swap, or map fewer frames at a time (--frames, then --extend). No map was "
+      "written; an "
+      "interrupted build goes on with --resume\n");
   CLI::App app{"Makes maps for camloc from recorded RGB-D sequences.", "camloc-map"};
   app.require_subcommand(1);
   int exit_code = 0;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/memory_guard.h"
 #include "core/map/mapping_guard.h"
 #include "tools/camloc/commands.h"
 #include "tools/common/command_line.h"
@@ -101,6 +102,7 @@ int run_external(const CLI::App& app, const std::vector<std::string>& arguments)
 }  // namespace camloc::tools
 
 int main(int argc, char** argv) {
+  camloc::install_memory_guard("camloc: out of memory; close other programs or add swap\n");
   camloc::install_mapping_guard();
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   int exit_code = 0;
