@@ -8,22 +8,11 @@
 
 #include "core/base/mix_bits.h"
 #include "core/base/order_statistics.h"
-#include "core/registration/pose_solver.h"
 
 namespace camloc {
 namespace {
 
 constexpr double kMinInlierRatio = 0.3;
-
-PoseSolverOptions solver_options(const PoseConsistencyOptions& options) {
-  PoseSolverOptions solver;
-  solver.max_features = solver.max_candidates = solver.max_ransac_pairs = options.max_features;
-  solver.candidate_ratio = 0.85;
-  solver.min_inliers = options.min_inliers;
-  solver.landmark_sigma_px = kFreshLandmarkSigmaPx;
-  solver.gathers_evidence = false;
-  return solver;
-}
 
 /// The points that a view measured, in its own camera: what another view is registered to.
 class ViewPoints final : public LandmarkPositions {
@@ -37,7 +26,24 @@ class ViewPoints final : public LandmarkPositions {
   const FrameFeatures* view_;
 };
 
-/// T_from_to and its covariance, from the depth points of one and the pixels of the other.
+double median_normalized_square(const std::vector<double>& errors, const std::vector<double>& variances, double added_variance) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < errors.size(); ++i) values.push_back(errors[i] * errors[i] / std::max(variances[i] + added_variance, 1e-300));
+  return upper_median(std::move(values));
+}
+
+}  // namespace
+
+PoseSolverOptions pair_solver_options(const PoseConsistencyOptions& options) {
+  PoseSolverOptions solver;
+  solver.max_features = solver.max_candidates = solver.max_ransac_pairs = options.max_features;
+  solver.candidate_ratio = 0.85;
+  solver.min_inliers = options.min_inliers;
+  solver.landmark_sigma_px = kFreshLandmarkSigmaPx;
+  solver.gathers_evidence = false;
+  return solver;
+}
+
 PoseEvidence register_views(const FrameFeatures& from, const FrameFeatures& to, std::uint64_t seed, PoseSolver* solver) {
   solver->candidates().clear();
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -47,14 +53,6 @@ PoseEvidence register_views(const FrameFeatures& from, const FrameFeatures& to, 
   solver->begin(to);
   return solver->solve(ViewPoints(from), solver->match_candidates(), seed);
 }
-
-double median_normalized_square(const std::vector<double>& errors, const std::vector<double>& variances, double added_variance) {
-  std::vector<double> values;
-  for (std::size_t i = 0; i < errors.size(); ++i) values.push_back(errors[i] * errors[i] / std::max(variances[i] + added_variance, 1e-300));
-  return upper_median(std::move(values));
-}
-
-}  // namespace
 
 double excess_sigma(const std::vector<double>& errors, const std::vector<double>& variances) {
   assert(errors.size() == variances.size());
@@ -102,7 +100,7 @@ std::vector<PoseConsistency::Pair> PoseConsistency::candidate_pairs() const {
 
 PoseConsistencyEstimate PoseConsistency::estimate() const {
   PoseConsistencyEstimate result;
-  PoseSolver solver(camera_, levels_, solver_options(options_));
+  PoseSolver solver(camera_, levels_, pair_solver_options(options_));
   std::vector<double> errors_m, variances_m2, errors_rad, variances_rad2;
   const std::vector<Pair> pairs = candidate_pairs();
   for (std::size_t k = 0; k < pairs.size() && k < options_.max_attempts && result.num_pairs < options_.max_pairs; ++k) {

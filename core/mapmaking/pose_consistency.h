@@ -12,6 +12,7 @@
 #include "core/geometry/camera.h"
 #include "core/mapmaking/landmark_fusion.h"
 #include "core/registration/keypoint_noise.h"
+#include "core/registration/pose_solver.h"
 
 namespace camloc {
 
@@ -51,6 +52,11 @@ class PoseConsistency {
   std::uint64_t num_added_ = 0, stride_ = 1;
   std::vector<FrameFeatures> views_;
 };
+
+/// T_from_to and its covariance, from the depth points of one and the pixels of the other; nobody's pose is looked at.
+[[nodiscard]] PoseEvidence register_views(const FrameFeatures& from, const FrameFeatures& to, std::uint64_t seed, PoseSolver* solver);
+/// Of a solver for register_views().
+[[nodiscard]] PoseSolverOptions pair_solver_options(const PoseConsistencyOptions& options);
 
 /// The standard deviation that, added to each error's own variance, makes the squared normalized errors have the median
 /// of a chi-squared variable with one degree of freedom; 0 when their own variances explain them already. Robust: half of
