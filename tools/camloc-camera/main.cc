@@ -14,6 +14,7 @@
 #include "drivers/sources.h"
 #include "tools/camloc-camera/calibration.h"
 #include "tools/common/command_line.h"
+#include "tools/common/named_choice.h"
 #include "tools/common/terminal_observer.h"
 #include "tools/common/text_format.h"
 
@@ -116,7 +117,7 @@ void add_calibrate_command(CLI::App* app, Arguments* arguments, int* exit_code) 
   const std::map<std::string, LensModel> lenses{
       {"brown_conrady", LensModel::kBrownConrady}, {"equidistant", LensModel::kEquidistant}, {"pinhole", LensModel::kPinhole}};
   command->add_option("--lens", arguments->options.lens, "brown_conrady (default), equidistant for wide angles, pinhole")
-      ->transform(CLI::CheckedTransformer(lenses));
+      ->transform(camloc::tools::named_choice(lenses));
   command->add_option("--max-views", arguments->options.max_views, "Views to calibrate with (default 40)")->check(CLI::Range(8, 1000));
   command->add_option("--seconds", arguments->max_seconds, "Look for so long (default: to the end of the recording, or Ctrl-C)")
       ->check(CLI::PositiveNumber);

@@ -10,6 +10,7 @@
 #include "core/io/file_bytes.h"
 #include "tools/camloc-map/commands.h"
 #include "tools/common/command_line.h"
+#include "tools/common/named_choice.h"
 #include "tools/common/text_format.h"
 #include "tools/mapping/colmap/map_export.h"
 
@@ -82,7 +83,7 @@ void add_export_command(CLI::App& app, int& exit_code) {
   command->add_flag("--wcs", arguments->options.use_wcs, "Write coordinates of the site; the map needs a datum");
   const std::map<std::string, PointColoring> colorings{{"height", PointColoring::kHeight}, {"observations", PointColoring::kObservations}};
   command->add_option("--color", arguments->options.coloring, "What the colour of a landmark stands for (default height)")
-      ->transform(CLI::CheckedTransformer(colorings));
+      ->transform(tools::named_choice(colorings));
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -10,6 +10,7 @@
 #include "core/io/sequence.h"
 #include "tools/camloc-map/commands.h"
 #include "tools/common/command_line.h"
+#include "tools/common/named_choice.h"
 #include "tools/mapping/picture/map_picture.h"
 
 namespace camloc::mapping {
@@ -63,7 +64,7 @@ void add_view_command(CLI::App& app, int& exit_code) {
   command->add_option("--width", arguments->width_px, "Width of the picture in pixels (default 1600)")->check(CLI::Range(400, 8000));
   const std::map<std::string, MapPanel> panels{
       {"top", MapPanel::kTop}, {"perspective", MapPanel::kPerspective}, {"coverage", MapPanel::kCoverage}, {"all", MapPanel::kAll}};
-  command->add_option("--view", arguments->panel, "What to draw (default all)")->transform(CLI::CheckedTransformer(panels));
+  command->add_option("--view", arguments->panel, "What to draw (default all)")->transform(tools::named_choice(panels));
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

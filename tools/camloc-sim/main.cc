@@ -13,6 +13,7 @@
 
 #include "tools/camloc-sim/dataset.h"
 #include "tools/common/command_line.h"
+#include "tools/common/named_choice.h"
 #include "tools/common/terminal_observer.h"
 #include "tools/common/text_format.h"
 
@@ -25,7 +26,7 @@ void add_options(CLI::App* app, std::string* out, camloc::sim::DatasetOptions* o
   app->add_option("--scene", options->kind,
                   "building: corridor loop (seed 1: 57 x 40 m) with nine offices; small: a corner and two offices")
       ->transform(
-          CLI::CheckedTransformer(std::map<std::string, SceneKind>{{"building", SceneKind::kBuilding}, {"small", SceneKind::kSmall}}))
+          camloc::tools::named_choice(std::map<std::string, SceneKind>{{"building", SceneKind::kBuilding}, {"small", SceneKind::kSmall}}))
       ->default_str("building");
   app->add_option("--seed", options->seed, "Another seed is another building and another walk")->capture_default_str();
   app->add_option("--rate-hz", options->recording.rate_hz, "Frames per second (default 30; small 10)")->check(CLI::Range(0.1, 240.0));

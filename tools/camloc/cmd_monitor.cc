@@ -14,6 +14,7 @@
 #include <string>
 
 #include "tools/camloc/commands.h"
+#include "tools/common/terminal_observer.h"
 #include "tools/doctor/doctor_checks.h"
 #include "tools/monitor/map_sketch.h"
 #include "tools/monitor/monitor_view.h"
@@ -145,7 +146,8 @@ int run(const MonitorOptions& options) {
   lcm.subscribe(options.status_channel, &Monitor::on_status, &monitor);
 
   bool has_hinted = false;
-  while (options.count == 0 || monitor.num_poses() < options.count) {
+  const InterruptGuard guard;
+  while (!InterruptGuard::is_interrupted() && (options.count == 0 || monitor.num_poses() < options.count)) {
     if (lcm.handleTimeout(100) < 0) break;  // a log file ends this way
     monitor.refresh();
     std::fflush(stdout);
@@ -161,6 +163,7 @@ int run(const MonitorOptions& options) {
     }
   }
   std::fflush(stdout);
+  if (InterruptGuard::is_interrupted()) return 0;  // whoever watches is not told of a failure when told to stop
   if (monitor.num_poses() > 0 && monitor.num_poses() >= options.count) return 0;
   return report({ErrorCode::kEnd, options.lcm_url + " ended after " + std::to_string(monitor.num_poses()) + " poses"});
 }

@@ -15,6 +15,7 @@
 #include "drivers/sources.h"
 #include "tools/camloc/commands.h"
 #include "tools/common/command_line.h"
+#include "tools/common/named_choice.h"
 #include "tools/common/terminal_observer.h"
 #include "tools/common/text_format.h"
 #include "tools/recording/recorder.h"
@@ -159,7 +160,7 @@ void add_record_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--compression", arguments->format.compression,
                    "fast (default), or small: depth takes 3 times the time and 3/4 of the bytes")
-      ->transform(CLI::CheckedTransformer(levels));
+      ->transform(named_choice(levels));
   command->add_option("--queue", arguments->options.queue_frames, "Frames that may wait for the disk (default 60)")
       ->check(CLI::Range(1, 10000));
   command->add_option("--writers", arguments->options.num_writers, "Threads that encode and write (default 2)")->check(CLI::Range(1, 64));
