@@ -14,14 +14,16 @@ namespace {
 constexpr int kMaxImageSize = 16384;
 constexpr int kMaxNewtonSteps = 10;
 
+using Coefficients = std::array<double, 8>;
+
 /// Distorted normalized coordinates and their Jacobian by the undistorted ones.
 struct Distorted {
   Eigen::Vector2d point;
   Eigen::Matrix2d jacobian;
 };
 
-Distorted distort_brown_conrady(const std::array<double, 5>& k, const Eigen::Vector2d& n) {
-  const auto [k1, k2, p1, p2, k3] = k;
+Distorted distort_brown_conrady(const Coefficients& k, const Eigen::Vector2d& n) {
+  const double k1 = k[0], k2 = k[1], p1 = k[2], p2 = k[3], k3 = k[4];
   const double x = n.x(), y = n.y(), r2 = x * x + y * y;
   const double radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
   const double radial_by_r2 = k1 + r2 * (2.0 * k2 + r2 * 3.0 * k3);
@@ -35,26 +37,44 @@ Distorted distort_brown_conrady(const std::array<double, 5>& k, const Eigen::Vec
   return d;
 }
 
-double equidistant_angle(const std::array<double, 5>& k, double theta) {
+Distorted distort_rational(const Coefficients& k, const Eigen::Vector2d& n) {
+  const auto [k1, k2, p1, p2, k3, k4, k5, k6] = k;
+  const double x = n.x(), y = n.y(), r2 = x * x + y * y;
+  const double above = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3)), below = 1.0 + r2 * (k4 + r2 * (k5 + r2 * k6));
+  const double above_by_r2 = k1 + r2 * (2.0 * k2 + r2 * 3.0 * k3), below_by_r2 = k4 + r2 * (2.0 * k5 + r2 * 3.0 * k6);
+  const double radial = above / below;
+  const double radial_by_r2 = (above_by_r2 - radial * below_by_r2) / below;
+  Distorted d;
+  d.point.x() = x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x);
+  d.point.y() = y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y;
+  d.jacobian(0, 0) = radial + 2.0 * x * x * radial_by_r2 + 2.0 * p1 * y + 6.0 * p2 * x;
+  d.jacobian(0, 1) = 2.0 * x * y * radial_by_r2 + 2.0 * p1 * x + 2.0 * p2 * y;
+  d.jacobian(1, 0) = d.jacobian(0, 1);
+  d.jacobian(1, 1) = radial + 2.0 * y * y * radial_by_r2 + 6.0 * p1 * y + 2.0 * p2 * x;
+  return d;
+}
+
+double equidistant_angle(const Coefficients& k, double theta) {
   const double t2 = theta * theta;
   return theta * (1.0 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))));
 }
 
-double equidistant_angle_derivative(const std::array<double, 5>& k, double theta) {
+double equidistant_angle_derivative(const Coefficients& k, double theta) {
   const double t2 = theta * theta;
   return 1.0 + t2 * (3.0 * k[0] + t2 * (5.0 * k[1] + t2 * (7.0 * k[2] + t2 * 9.0 * k[3])));
 }
 
-Eigen::Vector2d distort_equidistant(const std::array<double, 5>& k, const Eigen::Vector2d& n) {
+Eigen::Vector2d distort_equidistant(const Coefficients& k, const Eigen::Vector2d& n) {
   const double r = n.norm();
   if (r < 1e-12) return n;
   return equidistant_angle(k, std::atan(r)) / r * n;
 }
 
 /// Newton with step halving: each accepted step comes nearer to `target`, so the result is never worse than the start.
-Eigen::Vector2d undistort_brown_conrady(const std::array<double, 5>& k, const Eigen::Vector2d& target) {
+template <typename Distort>
+Eigen::Vector2d undistort_polynomial(const Distort& distort_at, const Coefficients& k, const Eigen::Vector2d& target) {
   Eigen::Vector2d n = target;
-  Distorted d = distort_brown_conrady(k, n);
+  Distorted d = distort_at(k, n);
   for (int step = 0; step < kMaxNewtonSteps; ++step) {
     const Eigen::Vector2d residual = d.point - target;
     const double determinant = d.jacobian.determinant();
@@ -65,7 +85,7 @@ Eigen::Vector2d undistort_brown_conrady(const std::array<double, 5>& k, const Ei
     bool is_better = false;
     for (double fraction = 1.0; fraction > 0.02 && !is_better; fraction *= 0.5) {
       const Eigen::Vector2d candidate = n + fraction * change;
-      const Distorted at_candidate = distort_brown_conrady(k, candidate);
+      const Distorted at_candidate = distort_at(k, candidate);
       is_better = (at_candidate.point - target).squaredNorm() < residual.squaredNorm();
       if (is_better) {
         n = candidate;
@@ -78,7 +98,7 @@ Eigen::Vector2d undistort_brown_conrady(const std::array<double, 5>& k, const Ei
 }
 
 /// The angle whose distorted value is `target`, by Newton on the angle, kept below a right angle.
-double undistort_equidistant_angle(const std::array<double, 5>& k, double target) {
+double undistort_equidistant_angle(const Coefficients& k, double target) {
   constexpr double kMaxAngle = 0.5 * std::numbers::pi - 1e-3;
   double theta = std::clamp(target, 0.0, kMaxAngle);
   for (int step = 0; step < kMaxNewtonSteps; ++step) {
@@ -95,8 +115,9 @@ bool is_slope_positive_up_to(const Intrinsics& camera, const Eigen::Vector2d& no
   constexpr int kSteps = 32;
   for (int i = 1; i <= kSteps; ++i) {
     const Eigen::Vector2d n = static_cast<double>(i) / kSteps * normalized;
-    if (camera.lens == LensModel::kBrownConrady) {
-      const Eigen::Matrix2d jacobian = distort_brown_conrady(camera.distortion, n).jacobian;
+    if (camera.lens != LensModel::kEquidistant) {
+      const bool is_rational = camera.lens == LensModel::kRational;
+      const Eigen::Matrix2d jacobian = (is_rational ? distort_rational : distort_brown_conrady)(camera.distortion, n).jacobian;
       if (jacobian.determinant() <= 0.0 || jacobian.trace() <= 0.0) return false;
     } else if (equidistant_angle_derivative(camera.distortion, std::atan(n.norm())) <= 0.0) {
       return false;
@@ -119,10 +140,15 @@ Status Intrinsics::validate() const {
   if (height < 1 || height > kMaxImageSize) return out_of_range("height", height, "1 to 16384 pixels");
   const double max_focal = 100.0 * std::max(width, height);
   if (!(fx > 0.0 && fx <= max_focal)) return out_of_range("fx", fx, "positive, at most 100 times the longer image side");
+  if (fy < 0.0) {
+    return out_of_range("fy", fy,
+                        "positive. With y upwards, as ICL-NUIM has it, the images are the same: write fy without the sign, and mirror "
+                        "given poses (or build without them)");
+  }
   if (!(fy > 0.0 && fy <= max_focal)) return out_of_range("fy", fy, "positive, at most 100 times the longer image side");
   if (!(cx > -width && cx < 2.0 * width)) return out_of_range("cx", cx, "at most one image width outside the image");
   if (!(cy > -height && cy < 2.0 * height)) return out_of_range("cy", cy, "at most one image height outside the image");
-  if (lens > LensModel::kEquidistant) return out_of_range("lens", static_cast<int>(lens), "0, 1 or 2");
+  if (lens > LensModel::kRational) return out_of_range("lens", static_cast<int>(lens), "0, 1, 2 or 3");
   for (const double k : distortion) {
     if (!(std::abs(k) <= 1000.0)) return out_of_range("distortion", k, "finite, magnitude at most 1000");
   }
@@ -134,13 +160,15 @@ Eigen::Vector2d Intrinsics::project(const Eigen::Vector3d& p_camera) const { ret
 Eigen::Vector2d Intrinsics::distort(const Eigen::Vector2d& normalized) const {
   Eigen::Vector2d d = normalized;
   if (lens == LensModel::kBrownConrady) d = distort_brown_conrady(distortion, normalized).point;
+  if (lens == LensModel::kRational) d = distort_rational(distortion, normalized).point;
   if (lens == LensModel::kEquidistant) d = distort_equidistant(distortion, normalized);
   return {fx * d.x() + cx, fy * d.y() + cy};
 }
 
 Eigen::Vector2d Intrinsics::undistort(const Eigen::Vector2d& pixel) const {
   const Eigen::Vector2d target((pixel.x() - cx) / fx, (pixel.y() - cy) / fy);
-  if (lens == LensModel::kBrownConrady) return undistort_brown_conrady(distortion, target);
+  if (lens == LensModel::kBrownConrady) return undistort_polynomial(distort_brown_conrady, distortion, target);
+  if (lens == LensModel::kRational) return undistort_polynomial(distort_rational, distortion, target);
   if (lens == LensModel::kEquidistant) {
     const double r = target.norm();
     if (r < 1e-12) return target;

@@ -21,6 +21,8 @@ enum class LensModel : std::uint8_t {
   kPinhole,       ///< no distortion
   kBrownConrady,  ///< k1 k2 p1 p2 k3 (Brown, "Decentering distortion of lenses", 1966; OpenCV's order)
   kEquidistant,   ///< k1 k2 k3 k4 (Kannala and Brandt, "A generic camera model and calibration method ...", 2006)
+  kRational,      ///< k1 k2 p1 p2 k3 k4 k5 k6: radial (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6); OpenCV's order
+                  ///< (Claus and Fitzgibbon, "A rational function lens distortion model ...", 2005)
 };
 
 /// Intrinsics of one camera together with the image size they belong to.
@@ -30,7 +32,7 @@ struct Intrinsics {
   double fx = 0, fy = 0;  ///< focal lengths, pixels
   double cx = 0, cy = 0;  ///< principal point, pixels
   LensModel lens = LensModel::kPinhole;
-  std::array<double, 5> distortion{};  ///< see LensModel; unused entries are zero
+  std::array<double, 8> distortion{};  ///< see LensModel; unused entries are zero
 
   /// Finite, positive focal lengths, principal point not absurdly far outside the image, size 1 to 16384.
   [[nodiscard]] Status validate() const;

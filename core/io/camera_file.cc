@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The camloc authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The first line tells TOML from YAML, a parser for each kind (camera_toml.cc, camera_yaml.cc) makes a camera of it, and here it
-// gets a name and is checked. Writing is here, too: always TOML, numbers so short that they read back as the same bits.
+// A parser for each kind (camera_KIND.cc, one line in the table below) makes a camera of a text, and here it gets a name and is checked.
+// Writing is here, too: always TOML, numbers so short that they read back as the same bits.
 #include "core/io/camera_file.h"
 
 #include <charconv>
@@ -17,17 +17,47 @@ namespace {
 
 constexpr std::size_t kMaxFileBytes = 1 << 20;
 
-enum class Kind { kToml, kYaml, kUnknown };
+bool starts_with(const std::string& text, std::string_view begin) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  return first != std::string::npos && std::string_view(text).substr(first).starts_with(begin);
+}
 
 /// TOML begins with a [table] or key = value, YAML with a directive, "---" or key: value.
-Kind kind_of(const std::string& text) {
+bool is_toml(const std::string& text) {
   const std::vector<TextLine> lines = content_lines(text);
-  if (lines.empty()) return Kind::kUnknown;
+  if (lines.empty()) return false;
   const std::string_view first = lines[0].text;
-  if (first[0] == '%' || first.starts_with("---")) return Kind::kYaml;
   const std::size_t mark = first.find_first_of("=:");
-  if (first[0] == '[' || (mark != std::string_view::npos && first[mark] == '=')) return Kind::kToml;
-  return mark != std::string_view::npos ? Kind::kYaml : Kind::kUnknown;
+  return first[0] == '[' || (mark != std::string_view::npos && first[mark] == '=');
+}
+
+bool is_yaml(const std::string& text) {
+  const std::vector<TextLine> lines = content_lines(text);
+  return !lines.empty() &&
+         (lines[0].text[0] == '%' || lines[0].text.starts_with("---") || lines[0].text.find(':') != std::string_view::npos);
+}
+
+/// A kind of calibration file. The first whose test says yes reads it.
+struct Reader {
+  bool (*is_kind)(const std::string& text);
+  Result<RgbdCamera> (*parse)(const std::string& text, const std::string& name, const CameraHints& hints);
+};
+constexpr Reader kReaders[] = {
+    {[](const std::string& text) { return starts_with(text, "<"); }, parse_camera_xml},
+    {[](const std::string& text) { return starts_with(text, "{"); }, parse_camera_json},
+    {is_colmap_cameras, parse_camera_colmap},
+    {is_toml, [](const std::string& text, const std::string& name, const CameraHints&) { return parse_camera_toml(text, name); }},
+    {is_yaml, parse_camera_yaml},
+};
+
+Result<RgbdCamera> parse_any(const std::string& text, const std::string& name, const CameraHints& hints) {
+  for (const Reader& reader : kReaders) {
+    if (reader.is_kind(text)) return reader.parse(text, name, hints);
+  }
+  return Status(ErrorCode::kInvalid,
+                name +
+                    ": no camera file; expected TOML as in config/cameras, YAML of kalibr, ROS or OpenCV, XML of OpenCV, JSON "
+                    "of Open3D or an SDK, or cameras.txt of COLMAP");
 }
 
 /// Shortest text that reads back as the same double.
@@ -54,6 +84,8 @@ std::string format_intrinsics(const Intrinsics& k) {
     case LensModel::kPinhole: return result + "lens = \"pinhole\"\n";
     case LensModel::kBrownConrady:
       return result + "lens = \"brown_conrady\"\ndistortion = " + list(k.distortion, 5) + "    # k1 k2 p1 p2 k3\n";
+    case LensModel::kRational:
+      return result + "lens = \"rational\"\ndistortion = " + list(k.distortion, 8) + "    # k1 k2 p1 p2 k3 k4 k5 k6\n";
     case LensModel::kEquidistant: return result + "lens = \"equidistant\"\ndistortion = " + list(k.distortion, 4) + "    # k1 k2 k3 k4\n";
   }
   return result;
@@ -61,26 +93,24 @@ std::string format_intrinsics(const Intrinsics& k) {
 
 }  // namespace
 
-Result<RgbdCamera> parse_camera(const std::string& text, const std::string& name) {
-  const Kind kind = kind_of(text);
-  if (kind == Kind::kUnknown) {
-    return Status(ErrorCode::kInvalid, name + ": no camera file; expected TOML as in config/cameras, or YAML of kalibr, ROS or OpenCV");
-  }
-  Result<RgbdCamera> camera = kind == Kind::kToml ? parse_camera_toml(text, name) : parse_camera_yaml(text, name);
+Result<RgbdCamera> parse_camera(const std::string& text, const std::string& name, const CameraHints& hints) {
+  Result<RgbdCamera> camera = parse_any(text, name, hints);
   if (!camera) return camera;
   if (camera->name.empty()) camera->name = std::filesystem::path(name).stem().string();
   if (Status status = camera->validate(); !status) return status.with_context(name);
   return camera;
 }
 
-Result<RgbdCamera> read_camera_file(const std::string& path) {
+Result<RgbdCamera> read_camera_file(const std::string& path, const CameraHints& hints) {
   Result<std::string> text = read_file_text(path, kMaxFileBytes);
   if (!text) return text.status();
-  return parse_camera(*text, path);
+  return parse_camera(*text, path, hints);
 }
 
-std::string format_camera_toml(const RgbdCamera& camera) {
-  std::string result = "name = " + in_double_quotes(camera.name) + "\n\n[color]\n" + format_intrinsics(camera.color) + "\n[depth]\n";
+std::string format_camera_toml(const RgbdCamera& camera, const std::vector<std::string>& comments) {
+  std::string result;
+  for (const std::string& comment : comments) result += "# " + comment + "\n";
+  result += "name = " + in_double_quotes(camera.name) + "\n\n[color]\n" + format_intrinsics(camera.color) + "\n[depth]\n";
   result += std::string("registered = ") + (camera.is_depth_registered ? "true" : "false") + "    # depth pixels are colour pixels\n";
   if (!camera.is_depth_registered) result += format_intrinsics(camera.depth);
   result += "unit_m = " + number(camera.depth_unit_m) + "    # metres per raw unit\n";

@@ -124,12 +124,14 @@ void read_intrinsics(TableReader* reader, Intrinsics* k) {
   reader->number("cx", true, &k->cx);
   reader->number("cy", true, &k->cy);
   int lens = 0;
-  reader->choice("lens", {"pinhole", "brown_conrady", "equidistant"}, &lens);
+  reader->choice("lens", {"pinhole", "brown_conrady", "equidistant", "rational"}, &lens);
   k->lens = static_cast<LensModel>(lens);
   if (k->lens == LensModel::kBrownConrady) reader->numbers("distortion", 4, 5, &k->distortion);
+  if (k->lens == LensModel::kRational) reader->numbers("distortion", 8, 8, &k->distortion);
   if (k->lens == LensModel::kEquidistant) reader->numbers("distortion", 4, 4, &k->distortion);
   if (k->lens == LensModel::kPinhole && reader->has("distortion")) {
-    reader->fail(reader->line_of("distortion"), "distortion: a pinhole lens has none; name the lens (brown_conrady, equidistant)");
+    reader->fail(reader->line_of("distortion"),
+                 "distortion: a pinhole lens has none; name the lens (brown_conrady, equidistant, rational)");
   }
 }
 

@@ -138,10 +138,10 @@ static_assert(sizeof(TransformRecord) == 56);
 /// See Intrinsics.
 struct IntrinsicsRecord {
   std::int32_t width, height;
-  std::uint32_t lens;      ///< 0 pinhole, 1 Brown-Conrady, 2 equidistant
-  std::uint32_t reserved;  ///< zero
-  double fx, fy, cx, cy;   ///< pixels
-  std::array<double, 5> distortion;
+  std::uint32_t lens;                ///< 0 pinhole, 1 Brown-Conrady, 2 equidistant, 3 rational
+  std::uint32_t reserved;            ///< zero
+  double fx, fy, cx, cy;             ///< pixels
+  std::array<double, 5> distortion;  ///< of lens 3: eight 32-bit floats k1 k2 p1 p2 k3 k4 k5 k6, then zeros
 };
 static_assert(sizeof(IntrinsicsRecord) == 88);
 

@@ -11,6 +11,8 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cassert>
 #include <cerrno>
 #include <cmath>
@@ -85,7 +87,11 @@ Intrinsics to_intrinsics(const map_format::IntrinsicsRecord& record) {
   intrinsics.cx = record.cx;
   intrinsics.cy = record.cy;
   intrinsics.lens = static_cast<LensModel>(record.lens);
-  intrinsics.distortion = record.distortion;
+  std::copy(record.distortion.begin(), record.distortion.end(), intrinsics.distortion.begin());
+  if (intrinsics.lens == LensModel::kRational) {
+    const auto packed = std::bit_cast<std::array<float, 10>>(record.distortion);
+    std::copy_n(packed.begin(), intrinsics.distortion.size(), intrinsics.distortion.begin());
+  }
   return intrinsics;
 }
 

@@ -6,6 +6,8 @@
 #include "core/map/map_writer.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -179,7 +181,12 @@ map_format::IntrinsicsRecord to_record(const Intrinsics& camera) {
   record.fy = camera.fy;
   record.cx = camera.cx;
   record.cy = camera.cy;
-  record.distortion = camera.distortion;
+  std::copy_n(camera.distortion.begin(), record.distortion.size(), record.distortion.begin());
+  if (camera.lens == LensModel::kRational) {
+    std::array<float, 10> packed{};
+    std::transform(camera.distortion.begin(), camera.distortion.end(), packed.begin(), [](double k) { return static_cast<float>(k); });
+    record.distortion = std::bit_cast<std::array<double, 5>>(packed);
+  }
   return record;
 }
 

@@ -62,7 +62,7 @@ TEST(CameraFile, ShippedValues) {
   const auto tum = read_camera_file(folder + "/tum-fr1.toml");
   ASSERT_TRUE(tum.is_ok());
   EXPECT_EQ(tum->color.lens, LensModel::kBrownConrady);
-  EXPECT_EQ(tum->color.distortion, (std::array<double, 5>{0.2624, -0.9531, -0.0054, 0.0026, 1.1633}));
+  EXPECT_EQ(tum->color.distortion, (std::array<double, 8>{0.2624, -0.9531, -0.0054, 0.0026, 1.1633}));
   EXPECT_EQ(tum->depth_unit_m, 0.0002);
   EXPECT_TRUE(tum->is_depth_registered);
   EXPECT_EQ(tum->depth.fx, 517.3);

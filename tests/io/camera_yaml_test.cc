@@ -64,7 +64,7 @@ TEST(CameraYaml, Kalibr) {
   EXPECT_EQ(camera.color.width, 752);
   EXPECT_EQ(camera.color.fy, 460.3);
   EXPECT_EQ(camera.color.lens, LensModel::kBrownConrady);
-  EXPECT_EQ(camera.color.distortion, (std::array<double, 5>{0.1, -0.2, 0.001, 0.002, 0}));
+  EXPECT_EQ(camera.color.distortion, (std::array<double, 8>{0.1, -0.2, 0.001, 0.002, 0}));
   EXPECT_TRUE(camera.is_depth_registered);
   EXPECT_EQ(camera.depth.fy, 460.3);
   EXPECT_EQ(camera.depth_unit_m, 0.001);
@@ -116,13 +116,61 @@ distortion_coefficients: !!opencv-matrix
 TEST(CameraYaml, OrbSlamWithDepthFactor) {
   const RgbdCamera camera = parsed(kOrbSlam);
   EXPECT_EQ(camera.color.fx, 517.306408);
-  EXPECT_EQ(camera.color.distortion, (std::array<double, 5>{0.262383, -0.953104, -0.005358, 0.002628, 1.163314}));
+  EXPECT_EQ(camera.color.distortion, (std::array<double, 8>{0.262383, -0.953104, -0.005358, 0.002628, 1.163314}));
   EXPECT_DOUBLE_EQ(camera.depth_unit_m, 0.0002);
   std::string three = kOrbSlam;
   for (const char* key : {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"})
     three.replace(three.find(std::string("Camera.") + key), 9, std::string("Camera1.") + key);
   three.insert(three.find('\n') + 1, "File.version: \"1.0\"\n");
   EXPECT_EQ(parsed(three).color.distortion, camera.color.distortion);
+}
+
+TEST(CameraYaml, SettingsThatFileStorageTakesAndYamlDoesNot) {
+  const RgbdCamera camera = parsed(std::string(kOrbSlam) + "\nViewer.PointSize:2\nViewer.Name:\t\"a:b\"\n");
+  EXPECT_EQ(camera.color.fx, parsed(kOrbSlam).color.fx);
+  EXPECT_EQ(camera.depth_unit_m, 0.0002);
+}
+
+TEST(CameraYaml, ASizeThatTheFileDoesNotSayIsAsked) {
+  std::string text = kOrbSlam;
+  for (const char* key : {"Camera.width: 640\n", "Camera.height: 480\n"}) text.erase(text.find(key), std::string(key).size());
+  const auto camera = parse_camera(text, "dir/cam.yaml");
+  ASSERT_FALSE(camera.is_ok());
+  EXPECT_NE(camera.status().message().find("--size 640x480"), std::string::npos) << camera.status().message();
+  std::vector<std::string> notes;
+  const auto sized = parse_camera(text, "dir/cam.yaml", {640, 480, &notes});
+  ASSERT_TRUE(sized.is_ok()) << sized.status().message();
+  EXPECT_EQ(sized->color.height, 480);
+  EXPECT_EQ(notes.size(), 2U);
+}
+
+TEST(CameraYaml, WithoutCoefficientsTheImagesAreRectified) {
+  std::vector<std::string> notes;
+  const auto camera = parse_camera(
+      "%YAML:1.0\n---\nimage_width: 640\nimage_height: 480\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n   dt: d\n"
+      "   data: [ 525., 0., 319.5, 0., 525., 239.5, 0., 0., 1. ]\n",
+      "dir/cam.yaml", {0, 0, &notes});
+  ASSERT_TRUE(camera.is_ok()) << camera.status().message();
+  EXPECT_EQ(camera->color.lens, LensModel::kPinhole);
+  EXPECT_EQ(camera->color.cx, 319.5);
+  ASSERT_EQ(notes.size(), 2U);
+  EXPECT_NE(notes[1].find("rectified"), std::string::npos);
+}
+
+TEST(CameraYaml, RationalLensIsKeptWithoutLoss) {
+  const RgbdCamera camera = parsed(
+      "header:\n  stamp: {sec: 0, nanosec: 0}\n  frame_id: rgb_camera_link\nheight: 720\nwidth: 1280\ndistortion_model: "
+      "rational_polynomial\n"
+      "d: [0.52, -2.71, 0.0006, -0.0001, 1.58, 0.40, -2.54, 1.51]\nk: [607.1, 0.0, 638.2, 0.0, 606.9, 366.4, 0.0, 0.0, 1.0]\n");
+  EXPECT_EQ(camera.color.lens, LensModel::kRational);
+  EXPECT_EQ(camera.color.distortion, (std::array<double, 8>{0.52, -2.71, 0.0006, -0.0001, 1.58, 0.40, -2.54, 1.51}));
+  const auto again = parse_camera(format_camera_toml(camera), "again");
+  ASSERT_TRUE(again.is_ok()) << again.status().message();
+  EXPECT_EQ(again->color.lens, LensModel::kRational);
+  EXPECT_EQ(again->color.distortion, camera.color.distortion);
+  const Eigen::Vector2d ray = again->color.undistort({1200, 100});
+  EXPECT_NEAR(ray.x(), 0.8788, 1e-3);
+  EXPECT_NEAR(ray.y(), -0.4173, 1e-3);
 }
 
 TEST(CameraYaml, ErrorsNameFileAndLineOrKey) {

@@ -39,9 +39,9 @@ OpencvReference::OpencvReference(const MapView& map, const RgbdCamera& camera, b
       landmarks_(map, camera.color, MapLandmarksOptions{}) {
   const Intrinsics& c = camera.color;
   K_ = (cv::Mat_<double>(3, 3) << c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1);
-  distortion_ = cv::Mat::zeros(1, 5, CV_64F);
-  if (c.lens == LensModel::kBrownConrady) {
-    for (int i = 0; i < 5; ++i) distortion_.at<double>(i) = c.distortion[static_cast<std::size_t>(i)];
+  distortion_ = cv::Mat::zeros(1, c.lens == LensModel::kRational ? 8 : 5, CV_64F);
+  if (c.lens == LensModel::kBrownConrady || c.lens == LensModel::kRational) {
+    for (int i = 0; i < distortion_.cols; ++i) distortion_.at<double>(i) = c.distortion[static_cast<std::size_t>(i)];
   }
   for (std::uint32_t landmark = 0; landmark < map.landmarks().size(); ++landmark) add(landmark, &all_);
 }

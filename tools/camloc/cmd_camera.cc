@@ -12,6 +12,7 @@
 
 #include "core/io/camera_file.h"
 #include "core/io/file_bytes.h"
+#include "core/io/text.h"
 #include "drivers/sources.h"
 #include "tools/camloc/commands.h"
 #include "tools/common/command_line.h"
@@ -21,7 +22,7 @@ namespace camloc::tools {
 namespace {
 
 struct CameraArguments {
-  std::string path, out_path, name;
+  std::string path, out_path, name, size;
   double depth_unit_m = 0;
   bool is_json = false;
 };
@@ -42,6 +43,9 @@ std::string format_intrinsics(const char* title, const Intrinsics& k) {
   if (k.lens == LensModel::kPinhole) return text + "            no distortion\n";
   if (k.lens == LensModel::kBrownConrady)
     append_text(&text, "            brown_conrady k1 %.6g k2 %.6g p1 %.6g p2 %.6g k3 %.6g\n", d[0], d[1], d[2], d[3], d[4]);
+  if (k.lens == LensModel::kRational)
+    append_text(&text, "            rational k1 %.6g k2 %.6g p1 %.6g p2 %.6g k3 %.6g k4 %.6g k5 %.6g k6 %.6g\n", d[0], d[1], d[2], d[3],
+                d[4], d[5], d[6], d[7]);
   if (k.lens == LensModel::kEquidistant)
     append_text(&text, "            equidistant k1 %.6g k2 %.6g k3 %.6g k4 %.6g\n", d[0], d[1], d[2], d[3]);
   double most_px = 0;
@@ -73,22 +77,43 @@ std::string format_depth(const RgbdCamera& camera) {
   return text;
 }
 
+Result<CameraHints> hints_of(const CameraArguments& arguments, std::vector<std::string>* notes) {
+  CameraHints hints{0, 0, notes};
+  if (arguments.size.empty()) return hints;
+  const std::vector<std::string_view> sides = split_fields(arguments.size, "x");
+  const auto width = sides.size() == 2 ? parse_int(sides[0]) : std::nullopt,
+             height = sides.size() == 2 ? parse_int(sides[1]) : std::nullopt;
+  if (!width || !height || *width < 1 || *width > 16384 || *height < 1 || *height > 16384) {
+    return Status(ErrorCode::kInvalid, "--size " + in_quotes(arguments.size) + ": expected WIDTHxHEIGHT, as 640x480");
+  }
+  hints.width = static_cast<int>(*width), hints.height = static_cast<int>(*height);
+  return hints;
+}
+
 Status show(const CameraArguments& arguments) {
-  const Result<RgbdCamera> camera = read_camera_file(arguments.path);
+  std::vector<std::string> notes;
+  const auto hints = hints_of(arguments, &notes);
+  if (!hints) return hints.status();
+  const Result<RgbdCamera> camera = read_camera_file(arguments.path, *hints);
   if (!camera) return camera.status();
   std::printf("camera      %s\n%s%s", camera->name.c_str(), format_intrinsics("colour", camera->color).c_str(),
               format_depth(*camera).c_str());
   if (camera->poses_are_of_depth_camera) std::printf("poses       recorded ones belong to the depth camera\n");
+  for (const std::string& note : notes) std::printf("note        %s\n", note.c_str());
   return Status::ok();
 }
 
 Status import(const CameraArguments& arguments) {
   if (Status status = check_output_path("--out", arguments.out_path); !status) return status;
-  Result<RgbdCamera> camera = read_camera_file(arguments.path);
+  std::vector<std::string> notes;
+  const auto hints = hints_of(arguments, &notes);
+  if (!hints) return hints.status();
+  Result<RgbdCamera> camera = read_camera_file(arguments.path, *hints);
   if (!camera) return camera.status();
   if (!arguments.name.empty()) camera->name = arguments.name;
   if (arguments.depth_unit_m > 0) camera->depth_unit_m = arguments.depth_unit_m;
-  if (Status status = replace_file(arguments.out_path, format_camera_toml(*camera)); !status) return status;
+  if (Status status = replace_file(arguments.out_path, format_camera_toml(*camera, notes)); !status) return status;
+  for (const std::string& note : notes) std::printf("note: %s\n", note.c_str());
   std::printf("%s: written; 'camloc camera show %s' shows it\n", arguments.out_path.c_str(), arguments.out_path.c_str());
   return Status::ok();
 }
@@ -123,9 +148,14 @@ void add_camera_command(CLI::App& app, int& exit_code) {
   list_command->add_flag("--json", arguments->is_json, "one JSON document");
   list_command->callback([arguments, &exit_code] { exit_code = report(list(*arguments)); });
   CLI::App* show_command = command->add_subcommand("show", "What a camera file says, in a table");
-  show_command->add_option("FILE", arguments->path, "Camera file: TOML of camloc, or YAML of kalibr, ROS, OpenCV")->required();
+  show_command
+      ->add_option("FILE", arguments->path,
+                   "Camera file: TOML of camloc; YAML of kalibr, ROS, OpenCV, ORB-SLAM; XML of OpenCV; JSON of Open3D and SDKs; "
+                   "cameras.txt of COLMAP")
+      ->required();
   show_command->callback([arguments, &exit_code] { exit_code = report(show(*arguments)); });
-  CLI::App* import_command = command->add_subcommand("import", "Write a kalibr, ROS or OpenCV calibration as camera file of camloc");
+  CLI::App* import_command =
+      command->add_subcommand("import", "Write the calibration of another program (see show) as camera file of camloc");
   import_command->add_option("FILE", arguments->path, "Calibration to read")->required();
   import_command->add_option("--out", arguments->out_path, "Camera file to write")->required();
   import_command->add_option("--name", arguments->name, "Name of the camera");
@@ -133,6 +163,9 @@ void add_camera_command(CLI::App& app, int& exit_code) {
       ->add_option("--depth-unit", arguments->depth_unit_m,
                    "Metres a unit of the depth image, which these files do not say (default 0.001)")
       ->check(CLI::Range(1e-5, 0.1));
+  for (CLI::App* reading : {show_command, import_command}) {
+    reading->add_option("--size", arguments->size, "Size of the images, WIDTHxHEIGHT, for files that do not say it");
+  }
   import_command->callback([arguments, &exit_code] { exit_code = report(import(*arguments)); });
 }
 

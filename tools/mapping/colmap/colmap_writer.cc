@@ -74,6 +74,9 @@ ColmapCamera to_colmap(const Intrinsics& intrinsics, std::uint32_t id) {
   if (intrinsics.lens == LensModel::kEquidistant) {
     camera.model = "OPENCV_FISHEYE";
     camera.parameters.insert(camera.parameters.end(), d.begin(), d.begin() + 4);
+  } else if (intrinsics.lens == LensModel::kRational) {
+    camera.model = "FULL_OPENCV";
+    camera.parameters.insert(camera.parameters.end(), d.begin(), d.end());
   } else if (intrinsics.lens == LensModel::kBrownConrady) {
     camera.model = d[4] == 0 ? "OPENCV" : "FULL_OPENCV";
     camera.parameters.insert(camera.parameters.end(), d.begin(), d.begin() + 4);
