@@ -74,12 +74,13 @@ struct PngDecoder {
     color_type = png_get_color_type(png, info);
     return true;
   }
-  /// Everything with colour becomes RGB, everything grey one byte; alpha goes.
+  /// Everything with colour becomes RGB, the upper eight bits of sixteen, everything grey one byte; alpha goes.
   bool start_bytes(bool wants_color) {
     if (setjmp(state.way_back) != 0) return false;
     if (color_type == PNG_COLOR_TYPE_PALETTE) png_set_palette_to_rgb(png);
     if (color_type == PNG_COLOR_TYPE_GRAY && bit_depth < 8) png_set_expand_gray_1_2_4_to_8(png);
     if (wants_color && (color_type & PNG_COLOR_MASK_COLOR) == 0) png_set_gray_to_rgb(png);
+    if (bit_depth == 16) png_set_strip_16(png);
     png_set_strip_alpha(png);
     return start_rows();
   }
@@ -128,8 +129,12 @@ Result<ImageSize> decode_png(std::span<const std::uint8_t> bytes, const std::str
   if (!decoder.read_header(bytes)) return decoder.broken(name);
   if (Status status = check_image_size(decoder.width, decoder.height, name); !status) return status;
   if (pixels == nullptr) return ImageSize{decoder.width, decoder.height};
-  if (decoder.bit_depth > 8) return {ErrorCode::kUnsupported, name + ": " + describe(decoder) + ", expected 8 bits"};
   const bool has_color = (decoder.color_type & PNG_COLOR_MASK_COLOR) != 0;
+  if (decoder.bit_depth > 8 && !has_color) {  // depth, or infrared whose ten bits would be black as eight
+    return {ErrorCode::kUnsupported, name + ": " + describe(decoder) +
+                                         ", expected 8 bits; convert it (magick IN.png -normalize -depth 8 OUT.png), or are "
+                                         "colour and depth exchanged?"};
+  }
   const bool wants_color = kind == PixelKind::kColor;
   if (!decoder.start_bytes(wants_color)) return decoder.broken(name);
   const std::size_t num_pixels = static_cast<std::size_t>(decoder.width) * static_cast<std::size_t>(decoder.height);
