@@ -182,7 +182,8 @@ Status assign_argument(const std::string& argument, Config* config) {
 std::string format_config(const Config& config) {
   std::string out =
       "# Configuration of camlocd. 'camlocd --print-config' writes this file; 'camlocd --check-config' checks it.\n"
-      "# Settings in FILE.d/*.toml come on top, then --set section.key=value. Unknown keys are errors.\n";
+      "# Settings in FILE.d/*.toml come on top, then --set section.key=value. Unknown keys are errors.\n"
+      "# Relative paths are meant from the folder of this file.\n";
   std::string_view section;
   for (const Setting& setting : settings()) {
     if (section != setting.section) out += std::string("\n[") + setting.section + "]\n";

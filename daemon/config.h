@@ -67,9 +67,10 @@ struct Setting {
 /// A configuration file with every setting, its text, unit and range; parses back to the same Config.
 [[nodiscard]] std::string format_config(const Config& config);
 
-/// From TOML. Errors: kInvalid with "name:line: section.key: why".
-[[nodiscard]] Status parse_config(std::string_view toml, const std::string& name, Config* config);
-/// The file, then its drop-ins FILE.d/*.toml in the order of their names, then the `arguments` (section.key=value).
+/// From TOML. Errors: kInvalid with "name:line: section.key: why". Relative paths get `folder` in front.
+[[nodiscard]] Status parse_config(std::string_view toml, const std::string& name, Config* config, const std::string& folder = "");
+/// Relative paths in the files are meant from the folder of `path`, those of `arguments` from where the daemon is started. The file, then
+/// its drop-ins FILE.d/*.toml in the order of their names, then the `arguments` (section.key=value).
 [[nodiscard]] Result<Config> load_config(const std::string& path, const std::vector<std::string>& arguments);
 
 }  // namespace camloc

@@ -10,6 +10,7 @@
 
 #include "core/io/file_bytes.h"
 #include "daemon/config.h"
+#include "drivers/source_url.h"
 
 namespace camloc {
 namespace {
@@ -33,7 +34,19 @@ std::string known_keys(std::string_view section) {
   return out;
 }
 
-Status parse_section(const std::string& section, const toml::table& table, const std::string& name, Config* config) {
+/// Relative paths are meant from `folder`, wherever the daemon is started; empty: from where it is started.
+SettingValue from_folder(const Setting& setting, const SettingValue& value, const std::string& folder) {
+  const std::string* text = std::get_if<std::string>(&value);
+  if (text == nullptr || text->empty() || folder.empty()) return value;
+  if (setting.field == SettingField(&Config::source_url)) return source_url_from(folder, *text);
+  for (const auto path : {&Config::source_camera, &Config::map_path, &Config::control_socket}) {
+    if (setting.field == SettingField(path)) return (std::filesystem::path(folder) / *text).string();  // an absolute one stays
+  }
+  return value;
+}
+
+Status parse_section(const std::string& section, const toml::table& table, const std::string& name, const std::string& folder,
+                     Config* config) {
   for (const auto& [key, node] : table) {
     const std::string where = at(name, key.source());
     const Setting* setting = find_setting(section, key.str());
@@ -43,7 +56,7 @@ Status parse_section(const std::string& section, const toml::table& table, const
     }
     const std::optional<SettingValue> value = value_of_node(node);
     if (!value) return {ErrorCode::kInvalid, where + ": " + setting->name() + ": wrong type; see camlocd --print-config"};
-    if (const Status status = assign(*setting, *value, config); !status) return status.with_context(where);
+    if (const Status status = assign(*setting, from_folder(*setting, *value, folder), config); !status) return status.with_context(where);
   }
   return Status::ok();
 }
@@ -62,16 +75,16 @@ Result<std::vector<std::string>> drop_ins(const std::string& folder) {
   return paths;
 }
 
-Status merge_file(const std::string& path, Config* config) {
+Status merge_file(const std::string& path, const std::string& folder, Config* config) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) return {ErrorCode::kIo, "cannot read configuration " + path + ": it is a folder"};
   const Result<std::string> text = read_file_text(path, kMaxFileBytes);  // regular files only: a named pipe would wait for a writer
-  return text ? parse_config(*text, path, config) : text.status().with_context("cannot read configuration");
+  return text ? parse_config(*text, path, config, folder) : text.status().with_context("cannot read configuration");
 }
 
 }  // namespace
 
-Status parse_config(std::string_view text, const std::string& name, Config* config) {
+Status parse_config(std::string_view text, const std::string& name, Config* config, const std::string& folder) {
   const toml::parse_result parsed = toml::parse(text, name);
   if (!parsed) { return {ErrorCode::kInvalid, at(name, parsed.error().source()) + ": " + std::string(parsed.error().description())}; }
   const toml::table& root = parsed.table();
@@ -83,7 +96,7 @@ Status parse_config(std::string_view text, const std::string& name, Config* conf
       return {ErrorCode::kInvalid, at(name, section.source()) + ": [" + title.substr(0, 40) +
                                        "]: unknown section; there are source, map, localize, publish, control, log"};
     }
-    if (const Status status = parse_section(title, *table, name, &result); !status) return status;
+    if (const Status status = parse_section(title, *table, name, folder, &result); !status) return status;
   }
   *config = result;
   return Status::ok();
@@ -91,11 +104,12 @@ Status parse_config(std::string_view text, const std::string& name, Config* conf
 
 Result<Config> load_config(const std::string& path, const std::vector<std::string>& arguments) {
   Config config;
-  if (const Status status = merge_file(path, &config); !status) return status;
+  const std::string folder = std::filesystem::path(path).parent_path().string();  // of the drop-ins, too: they belong to this file
+  if (const Status status = merge_file(path, folder, &config); !status) return status;
   const Result<std::vector<std::string>> extra = drop_ins(path + ".d");
   if (!extra) return extra.status();
   for (const std::string& file : *extra) {
-    if (const Status status = merge_file(file, &config); !status) return status;
+    if (const Status status = merge_file(file, folder, &config); !status) return status;
   }
   for (const std::string& argument : arguments) {
     if (const Status status = assign_argument(argument, &config); !status) return status.with_context("--set");

@@ -6,6 +6,8 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 
 #include "core/io/text.h"
 
@@ -34,6 +36,19 @@ std::string percent_decoded(std::string_view text) {
 bool is_scheme(std::string_view text) {
   return !text.empty() &&
          std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '+' || c == '-'; });
+}
+
+bool has_scheme(std::string_view url) {
+  const std::size_t separator = url.find("://");
+  return separator != std::string_view::npos && is_scheme(url.substr(0, separator));
+}
+
+/// Of a bare path: where its options begin, or its size.
+std::size_t path_end(std::string_view text) {
+  const std::size_t question = text.find('?');
+  std::error_code ignored;
+  if (question == std::string_view::npos || std::filesystem::exists(std::filesystem::path(text), ignored)) return text.size();
+  return question;
 }
 
 Status parse_options(std::string_view query, SourceUrl* url) {
@@ -110,21 +125,46 @@ void OptionReader::fail(const std::string& key, const std::string& expected) {
   if (status_) status_ = {ErrorCode::kInvalid, url_.text + ": option " + key + "=" + url_.text_option(key, "") + ": " + expected};
 }
 
+std::string replay_url(std::string_view folder) {
+  std::string url = "replay://";
+  for (const char c : folder) {
+    if (c == '%') url += "%25";
+    if (c == '?') url += "%3F";
+    if (c != '%' && c != '?') url += c;
+  }
+  return url;
+}
+
+std::string as_source_url(const std::string& text) {
+  if (has_scheme(text)) return text;
+  const std::size_t question = path_end(text);
+  return replay_url(text.substr(0, question)) + (question < text.size() ? text.substr(question) : "");
+}
+
+std::string source_url_from(const std::string& folder, const std::string& text) {
+  if (folder.empty() || text.empty()) return text;
+  if (!has_scheme(text)) return text.front() == '/' ? text : (std::filesystem::path(folder) / text).string();
+  const std::size_t begin = text.find("://") + 3;
+  const std::string scheme = text.substr(0, begin);
+  if ((scheme != "replay://" && scheme != "oni://") || begin == text.size() || text[begin] == '/' || text[begin] == '?') return text;
+  return scheme + replay_url(folder).substr(std::string_view("replay://").size()) + "/" + text.substr(begin);
+}
+
 Result<SourceUrl> parse_source_url(std::string_view url) {
   SourceUrl result;
   result.text = url;
   const std::size_t separator = url.find("://");
-  const bool has_scheme = separator != std::string_view::npos && is_scheme(url.substr(0, separator));
-  std::string_view rest = has_scheme ? url.substr(separator + 3) : url;
-  result.scheme = has_scheme ? url.substr(0, separator) : "replay";
+  const bool is_url = has_scheme(url);
+  std::string_view rest = is_url ? url.substr(separator + 3) : url;
+  result.scheme = is_url ? url.substr(0, separator) : "replay";
   std::transform(result.scheme.begin(), result.scheme.end(), result.scheme.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const std::size_t question = rest.find('?');
-  if (question != std::string_view::npos) {
+  const std::size_t question = is_url ? std::min(rest.find('?'), rest.size()) : path_end(rest);
+  if (question < rest.size()) {
     if (Status status = parse_options(rest.substr(question + 1), &result); !status) return status;
     rest = rest.substr(0, question);
   }
-  result.path = has_scheme ? percent_decoded(rest) : std::string(rest);
+  result.path = is_url ? percent_decoded(rest) : std::string(rest);
   return result;
 }
 

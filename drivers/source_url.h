@@ -48,8 +48,14 @@ class OptionReader {
   Status status_;
 };
 
-/// %XX is decoded in path and values of a URL with a scheme. A bare path is taken to the letter up to its first '?' and
-/// means replay://path.
+/// %XX is decoded in path and values of a URL with a scheme. A bare path is taken to the letter and means replay://path; up to its first
+/// '?', where nothing of the whole name exists.
 [[nodiscard]] Result<SourceUrl> parse_source_url(std::string_view url);
+/// replay:// with `folder` to the letter, whatever it is called.
+[[nodiscard]] std::string replay_url(std::string_view folder);
+/// Of what people write, the URL: a bare path becomes replay_url() with the options behind it.
+[[nodiscard]] std::string as_source_url(const std::string& text);
+/// With `folder` in front of a path that is relative, where the scheme's path is a file or folder (bare, replay, oni).
+[[nodiscard]] std::string source_url_from(const std::string& folder, const std::string& text);
 
 }  // namespace camloc

@@ -114,9 +114,24 @@ TEST(ConfigTest, DropInsComeAfterTheFileAndArgumentsLast) {
   folder.write("c.toml.d/ignored.txt", "nonsense");
   const Result<Config> config = load_config(path, {"localize.max_coast_ms=7"});
   ASSERT_TRUE(config) << config.status().message();
-  EXPECT_EQ(config.value().map_path, "b");
+  EXPECT_EQ(config.value().map_path, folder.file("b")) << "meant from the folder of the configuration, in a drop-in, too";
   EXPECT_EQ(config.value().localize_features, 400);
   EXPECT_EQ(config.value().localize_max_coast_ms, 7);
+}
+
+TEST(ConfigTest, RelativePathsAreMeantFromTheFolderOfTheFile) {
+  const TestFolder folder;
+  const std::string path = folder.write("site/c.toml",
+                                        "[source]\nurl = 'walk?speed=1'\ncamera = 'camera.toml'\n[map]\npath = '/maps/a.cmap'\n"
+                                        "[control]\nsocket = ''\n");
+  const Result<Config> config = load_config(path, {});
+  ASSERT_TRUE(config) << config.status().message();
+  EXPECT_EQ(config->source_url, folder.file("site/walk?speed=1"));
+  EXPECT_EQ(config->source_camera, folder.file("site/camera.toml"));
+  EXPECT_EQ(config->map_path, "/maps/a.cmap");
+  EXPECT_EQ(config->control_socket, "") << "empty is off";
+  const Result<Config> argued = load_config(path, {"source.camera=other.toml"});
+  EXPECT_EQ(argued->source_camera, "other.toml") << "an argument is meant from where the daemon is started";
 }
 
 TEST(ConfigTest, MissingFileFolderAndHugeFileAreErrors) {

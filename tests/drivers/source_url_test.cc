@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/drivers/test_folder.h"
+
 namespace camloc {
 namespace {
 
@@ -27,6 +29,30 @@ TEST(SourceUrl, RelativeAndEscapedPaths) {
   EXPECT_EQ(parse("replay://100%/%zz/%4").path, "100%/%zz/%4");
   EXPECT_EQ(parse("replay://what%3f").path, "what?");
   EXPECT_EQ(parse("replay://x%00y").path, "x%00y") << "a zero byte would cut the path";
+}
+
+TEST(SourceUrl, PlainPathsAreNoUrls) {
+  const TestFolder folder;
+  for (const char* name : {"walk%203", "what?", "a?frames=1", "50%", "caf\xC3\xA9 #2", "x%41"}) {
+    folder.write(std::string(name) + "/file", "x");
+    const std::string path = folder / name;
+    EXPECT_EQ(parse(path).path, path) << "a bare path is taken to the letter";
+    EXPECT_EQ(parse(replay_url(path)).path, path);
+    const SourceUrl url = parse(as_source_url(path) + "?speed=2");
+    EXPECT_EQ(url.path, path);
+    EXPECT_EQ(url.text_option("speed", ""), "2");
+  }
+  EXPECT_EQ(as_source_url("replay://a%20b"), "replay://a%20b");
+  EXPECT_EQ(parse(as_source_url("no%20such?speed=2")).path, "no%20such");
+}
+
+TEST(SourceUrl, RelativePathsGetAFolder) {
+  EXPECT_EQ(parse(source_url_from("/etc/50% off", "walk?loop=1")).path, "/etc/50% off/walk");
+  EXPECT_EQ(parse(source_url_from("/etc/50% off", "replay://my%20walk?loop=1")).path, "/etc/50% off/my walk");
+  EXPECT_EQ(source_url_from("/etc", "oni://a.oni"), "oni:///etc/a.oni");
+  for (const char* text : {"", "/walk", "replay:///walk", "sample://", "v4l2://dev", "kinect://"})
+    EXPECT_EQ(source_url_from("/etc", text), text);
+  EXPECT_EQ(source_url_from("", "walk"), "walk");
 }
 
 TEST(SourceUrl, BarePathMeansReplay) {
