@@ -196,6 +196,9 @@ void Service::on_phase(const CaptureReport& report) {
       last_frame_ns_ = monotonic_ns();
       source_trouble_.clear();
       log_.write(LogLevel::kInfo, "%s: %s", was_stalled ? "frames arrive again" : "source open", report.info.description.c_str());
+      if (!was_stalled) {
+        for (const std::string& note : report.info.notes) log_.write(LogLevel::kWarning, "%s", note.c_str());
+      }
       break;
     case CapturePhase::kStalled:
       log_.write(LogLevel::kWarning, "camera stalled: %s", report.problem.c_str());

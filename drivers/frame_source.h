@@ -30,6 +30,7 @@ struct FrameSourceInfo {
   std::optional<std::uint64_t> num_frames;  ///< of a recording, after selection
   std::optional<RgbdCamera> camera;         ///< where the source knows its own calibration
   StampClock stamp_clock = StampClock::kRecorded;
+  std::vector<std::string> notes;  ///< what a recording lacks, for people: a line each
 };
 
 /// What a live source has seen go wrong since it was opened, and what else the device measures.

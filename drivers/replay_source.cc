@@ -22,6 +22,7 @@ struct Recording {
   std::vector<SequenceFrame> frames;
   std::uint64_t num_recorded = 0;  ///< before any selection
   std::int64_t length_ns = 0;      ///< first exposure to one mean interval after the last
+  std::vector<std::string> notes;
 };
 
 class ReplaySource final : public Playback {
@@ -66,16 +67,16 @@ class ReplaySource final : public Playback {
   ImageReader reader_;
 };
 
-Result<Recording> select_recording(const SourceUrl& url, double rate_hz) {
-  Result<Sequence> sequence = read_sequence(url.path, rate_hz);
+Result<Recording> select_recording(const SourceUrl& url, const SequenceOptions& options) {
+  Result<Sequence> sequence = read_sequence(url.path, options);
   if (!sequence) return sequence.status();
   const std::vector<SequenceFrame>& all = sequence->frames;
   const Result<std::vector<std::size_t>> chosen = chosen_frames(url, all.size());
   if (!chosen) return chosen.status();
-  Recording recording{url.path, {}, all.size(), 0};
+  Recording recording{url.path, {}, all.size(), 0, sequence->notes};
   for (const std::size_t index : *chosen) recording.frames.push_back(all[index]);
   const std::int64_t span_ns = all.back().stamp_ns - all.front().stamp_ns;
-  recording.length_ns = playback_length_ns(span_ns, all.size(), static_cast<std::int64_t>(1e9 / rate_hz));
+  recording.length_ns = playback_length_ns(span_ns, all.size(), static_cast<std::int64_t>(1e9 / options.frame_rate_hz));
   return recording;
 }
 
@@ -104,6 +105,7 @@ Result<FrameSourceInfo> describe(const Recording& recording) {
     info.depth_width = depth->width;
     info.depth_height = depth->height;
   }
+  info.notes = recording.notes;
   info.num_frames = recording.frames.size();
   info.description = "recording " + recording.folder + ", " + std::to_string(recording.frames.size()) + " of " +
                      std::to_string(recording.num_recorded) + " frames, " + std::to_string(color->width) + "x" +
@@ -121,13 +123,14 @@ Result<FrameSourceInfo> describe(const Recording& recording) {
 }  // namespace
 
 Result<std::unique_ptr<FrameSource>> open_replay_source(const SourceUrl& url, const FrameSourceOptions& options) {
-  if (Status status = url.check_options({"speed", "loop", "frames", "exclude", "rate_hz"}); !status) return status;
+  if (Status status = url.check_options({"speed", "loop", "frames", "exclude", "rate_hz", "pair_ms"}); !status) return status;
   if (url.path.empty()) return Status(ErrorCode::kInvalid, url.text + ": no folder; expected replay://DIR");
   OptionReader reader(url);
   const double speed = reader.number("speed", 0, 0, 1000), rate_hz = reader.number("rate_hz", 30, 0.01, 10000);
+  const double pair_ms = reader.number("pair_ms", SequenceOptions{}.pair_ms, 0, 1000);
   const PlaybackOptions playback{speed, reader.flag("loop"), options.wants_color};
   if (!reader.status()) return reader.status();
-  Result<Recording> recording = select_recording(url, rate_hz);
+  Result<Recording> recording = select_recording(url, {rate_hz, pair_ms});
   if (!recording) return recording.status();
   Result<FrameSourceInfo> info = describe(*recording);
   if (!info) return info.status();

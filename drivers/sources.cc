@@ -55,7 +55,8 @@ constexpr SourceEntry kSources[] = {
      nullptr,
      true,
      {},
-     "replay://DIR?speed=1&loop=0&frames=0:100:2&exclude=::50&rate_hz=30  a recorded TUM RGB-D or 7-Scenes folder; speed=0 (default) is as "
+     "replay://DIR?speed=1&loop=0&frames=0:100:2&exclude=::50&rate_hz=30&pair_ms=20  a recorded TUM RGB-D or 7-Scenes folder; speed=0 "
+     "(default) is as "
      "fast as possible"},
     {"sample",
      open_sample_source,

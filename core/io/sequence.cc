@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <map>
 #include <queue>
 #include <system_error>
@@ -17,6 +18,7 @@
 #include <utility>
 
 #include "core/io/file_bytes.h"
+#include "core/io/left_out.h"
 #include "core/io/text.h"
 
 namespace camloc {
@@ -24,8 +26,6 @@ namespace camloc {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::int64_t kMaxGapNs = 20'000'000;  // between a colour image and its depth; TUM's own tools take the same
 
 struct StampedFile {
   std::int64_t stamp_ns = 0;
@@ -38,21 +38,30 @@ bool is_file(const fs::path& path) {
 }
 
 /// rgb.txt or depth.txt: "timestamp filename" a line. A comma may stand for the blank, as the benchmark's own tools allow.
-Result<std::vector<StampedFile>> read_image_list(const fs::path& folder, const char* name) {
+Result<std::vector<StampedFile>> read_image_list(const fs::path& folder, const char* name, std::vector<std::string>* notes) {
   const std::string list_path = (folder / name).string();
   Result<std::string> text = read_file_text(list_path);
   if (!text) return text.status();
   std::vector<StampedFile> files;
+  LeftOut repeated, timeless;
   for (const TextLine& line : content_lines(*text)) {
     const std::size_t end = line.text.find_first_of(" \t,");
     const std::string_view stamp_text = line.text.substr(0, end);
+    if (is_missing_number(stamp_text)) {
+      timeless.add(line.number);
+      continue;
+    }
     const std::optional<std::int64_t> stamp_ns = parse_seconds_ns(stamp_text);
     if (!stamp_ns) return line_error(list_path, line.number, "stamp " + in_quotes(stamp_text) + " is not a time in seconds");
     const std::size_t begin = end == std::string_view::npos ? end : line.text.find_first_not_of(" \t,", end);
     if (begin == std::string_view::npos)
       return line_error(list_path, line.number, "expected 'timestamp filename', the file name is missing");
-    if (!files.empty() && *stamp_ns <= files.back().stamp_ns) {
-      return line_error(list_path, line.number, "stamp " + in_quotes(stamp_text) + " is not after the one above it; sort the file by time");
+    if (!files.empty() && *stamp_ns == files.back().stamp_ns) {
+      repeated.add(line.number);
+      continue;
+    }
+    if (!files.empty() && *stamp_ns < files.back().stamp_ns) {
+      return line_error(list_path, line.number, "stamp " + in_quotes(stamp_text) + " is before the one above it; sort the file by time");
     }
     const std::string_view file = line.text.substr(begin);
     if (file.find('\0') != std::string_view::npos) return line_error(list_path, line.number, "bad file name " + in_quotes(file));
@@ -60,6 +69,8 @@ Result<std::vector<StampedFile>> read_image_list(const fs::path& folder, const c
     if (!is_file(path)) return line_error(list_path, line.number, "image " + path.string() + " does not exist");
     files.push_back({*stamp_ns, path.string()});
   }
+  repeated.note(list_path, "image", "with the stamp of the one before", notes);
+  timeless.note(list_path, "image", "without a time", notes);
   return files;
 }
 
@@ -131,21 +142,57 @@ class PairsByTime {
 };
 
 /// Each depth image goes to at most one colour image: closest pairs first.
-void associate(const std::vector<StampedFile>& depths, std::vector<SequenceFrame>* frames) {
-  PairsByTime pairs(depths, *frames, kMaxGapNs);
+void associate(const std::vector<StampedFile>& depths, std::int64_t max_gap_ns, std::vector<SequenceFrame>* frames) {
+  PairsByTime pairs(depths, *frames, max_gap_ns);
   while (const auto pair = pairs.next()) (*frames)[pair->first].depth_path = depths[pair->second].path;
 }
 
-Result<Sequence> read_tum(const std::string& folder) {
-  Result<std::vector<StampedFile>> colors = read_image_list(folder, "rgb.txt");
+std::string milliseconds(std::int64_t ns) {
+  const std::string tenths = std::to_string((ns + 50'000) / 100'000);
+  return (tenths.size() > 1 ? tenths.substr(0, tenths.size() - 1) : "0") + "." + tenths.back() + " ms";
+}
+
+/// How far the depth image nearest in time is from each colour image that has none; ascending.
+std::vector<std::int64_t> gaps_of_unpaired(const std::vector<SequenceFrame>& frames, const std::vector<StampedFile>& depths) {
+  std::vector<std::int64_t> gaps;
+  for (const SequenceFrame& frame : frames) {
+    if (!frame.depth_path.empty()) continue;
+    const auto after = std::lower_bound(depths.begin(), depths.end(), frame.stamp_ns,
+                                        [](const StampedFile& file, std::int64_t stamp_ns) { return file.stamp_ns < stamp_ns; });
+    std::int64_t gap = std::numeric_limits<std::int64_t>::max();
+    if (after != depths.end()) gap = after->stamp_ns - frame.stamp_ns;
+    if (after != depths.begin()) gap = std::min(gap, frame.stamp_ns - (after - 1)->stamp_ns);
+    gaps.push_back(gap);
+  }
+  std::sort(gaps.begin(), gaps.end());
+  return gaps;
+}
+
+/// A few colour images without depth are usual; one in ten and more is worth a word.
+void note_pairing(const std::vector<StampedFile>& depths, const SequenceOptions& options, Sequence* sequence) {
+  const std::vector<std::int64_t> gaps = gaps_of_unpaired(sequence->frames, depths);
+  const std::size_t num_colors = sequence->frames.size();
+  if (gaps.size() * 10 < num_colors || depths.empty()) return;
+  const std::string counts = std::to_string(num_colors) + " colour and " + std::to_string(depths.size()) + " depth images";
+  const std::string found = gaps.size() == num_colors
+                                ? counts + ", none nearer than " + milliseconds(gaps.front())
+                                : counts + ", " + std::to_string(gaps.size()) + " of the colour images without depth, typically " +
+                                      milliseconds(gaps[gaps.size() / 2]) + " from the nearest";
+  const std::string window = milliseconds(static_cast<std::int64_t>(options.pair_ms * 1e6));
+  sequence->notes.push_back(sequence->folder + ": " + found + "; pairs may be " + window + " apart, pair_ms (--pair-ms) sets that");
+}
+
+Result<Sequence> read_tum(const std::string& folder, const SequenceOptions& options) {
+  Sequence sequence{folder, "tum", {}, {}};
+  Result<std::vector<StampedFile>> colors = read_image_list(folder, "rgb.txt", &sequence.notes);
   if (!colors) return colors.status();
   if (colors->empty()) return Status(ErrorCode::kInvalid, folder + "/rgb.txt: lists no image");
-  Sequence sequence{folder, "tum", {}};
   for (const StampedFile& color : *colors) { sequence.frames.push_back({sequence.frames.size(), color.stamp_ns, color.path, ""}); }
   if (!is_file(fs::path(folder) / "depth.txt")) return sequence;
-  Result<std::vector<StampedFile>> depths = read_image_list(folder, "depth.txt");
+  Result<std::vector<StampedFile>> depths = read_image_list(folder, "depth.txt", &sequence.notes);
   if (!depths) return depths.status();
-  associate(*depths, &sequence.frames);
+  associate(*depths, static_cast<std::int64_t>(options.pair_ms * 1e6), &sequence.frames);
+  note_pairing(*depths, options, &sequence);
   return sequence;
 }
 
@@ -161,7 +208,7 @@ std::optional<std::int64_t> frame_number(std::string_view name) {
   return parse_int(digits);
 }
 
-Result<Sequence> read_7scenes(const std::string& folder, double frame_rate_hz) {
+Result<Sequence> read_7scenes(const std::string& folder, const SequenceOptions& options) {
   std::error_code error;
   std::map<std::int64_t, std::string> names;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
@@ -173,13 +220,15 @@ Result<Sequence> read_7scenes(const std::string& folder, double frame_rate_hz) {
   }
   if (error) return Status(ErrorCode::kIo, folder + ": " + error.message());
   if (names.empty()) {
-    return Status(ErrorCode::kInvalid, folder + ": not a sequence (neither rgb.txt of TUM RGB-D nor frame-NNNNNN.color.* of 7-Scenes)");
+    return Status(ErrorCode::kInvalid, folder +
+                                           ": not a sequence (no rgb.txt of TUM RGB-D, no associations.txt, no frame-NNNNNN.color.* of "
+                                           "7-Scenes, no color/N.jpg of ScanNet)");
   }
-  Sequence sequence{folder, "7scenes", {}};
+  Sequence sequence{folder, "7scenes", {}, {}};
   for (const auto& [number, name] : names) {
     const fs::path color = fs::path(folder) / name;
     const std::string depth = (fs::path(folder) / (name.substr(0, name.find('.')) + ".depth.png")).string();
-    const std::int64_t stamp_ns = std::llround(static_cast<double>(number) * 1e9 / frame_rate_hz);
+    const std::int64_t stamp_ns = std::llround(static_cast<double>(number) * 1e9 / options.frame_rate_hz);
     sequence.frames.push_back({sequence.frames.size(), stamp_ns, color.string(), is_file(depth) ? depth : ""});
   }
   return sequence;
@@ -187,13 +236,16 @@ Result<Sequence> read_7scenes(const std::string& folder, double frame_rate_hz) {
 
 }  // namespace
 
-Result<Sequence> read_sequence(const std::string& folder, double frame_rate_hz) {
+Result<Sequence> read_sequence(const std::string& folder, const SequenceOptions& options) {
   std::error_code error;
   const fs::file_status status = fs::status(folder, error);
   if (!fs::exists(status)) return Status(ErrorCode::kNotFound, folder + ": no such folder");
   if (!fs::is_directory(status))
     return Status(ErrorCode::kInvalid, folder + ": not a folder; a sequence is a TUM RGB-D or 7-Scenes folder");
-  return is_file(fs::path(folder) / "rgb.txt") ? read_tum(folder) : read_7scenes(folder, frame_rate_hz);
+  // The first layout that is there; 7-Scenes says what is missing.
+  if (is_file(fs::path(folder) / "rgb.txt")) return read_tum(folder, options);
+  if (has_associations(folder)) return read_associations(folder, options);
+  return has_scannet_layout(folder) ? read_scannet(folder, options) : read_7scenes(folder, options);
 }
 
 }  // namespace camloc

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "core/io/file_bytes.h"
+#include "core/io/left_out.h"
 #include "core/io/sequence.h"
 #include "core/io/text.h"
 
@@ -32,7 +33,8 @@ Result<std::optional<Rigid3>> read_pose_matrix(const std::string& path) {
     return Status(ErrorCode::kInvalid, path + ": " + std::to_string(fields.size()) + " numbers, expected a 4x4 matrix");
   Eigen::Matrix4d matrix;
   for (int i = 0; i < 16; ++i) {
-    const std::optional<double> value = parse_double(fields[static_cast<std::size_t>(i)]);
+    const std::string_view field = fields[static_cast<std::size_t>(i)];
+    const std::optional<double> value = is_missing_number(field) ? std::numeric_limits<double>::quiet_NaN() : parse_double(field);
     if (!value) return Status(ErrorCode::kInvalid, path + ": " + in_quotes(fields[static_cast<std::size_t>(i)]) + " is not a number");
     matrix(i / 4, i % 4) = *value;
   }
@@ -45,7 +47,9 @@ Result<std::optional<Rigid3>> read_pose_matrix(const std::string& path) {
   return std::optional<Rigid3>(Rigid3{nearest_rotation(rotation), matrix.topRightCorner<3, 1>()});
 }
 
-std::string pose_path_of(const SequenceFrame& frame) {
+std::string pose_path_of(const SequenceFrame& frame, bool is_scannet) {
+  const std::filesystem::path color(frame.color_path);
+  if (is_scannet) return (color.parent_path().parent_path() / "pose" / (color.stem().string() + ".txt")).string();
   const std::size_t suffix = frame.color_path.rfind(".color.");
   return frame.color_path.substr(0, suffix) + ".pose.txt";
 }
@@ -54,20 +58,39 @@ Result<std::vector<std::optional<Rigid3>>> read_pose_matrices(const Sequence& se
   std::vector<std::optional<Rigid3>> poses;
   bool has_any_file = false;
   for (const SequenceFrame& frame : sequence.frames) {
-    Result<std::optional<Rigid3>> T_world_camera = read_pose_matrix(pose_path_of(frame));
+    Result<std::optional<Rigid3>> T_world_camera = read_pose_matrix(pose_path_of(frame, sequence.layout == "scannet"));
     if (!T_world_camera && T_world_camera.status().code() != ErrorCode::kNotFound) return T_world_camera.status();
     has_any_file = has_any_file || T_world_camera.is_ok();
     poses.push_back(T_world_camera ? *T_world_camera : std::nullopt);
   }
-  if (!has_any_file) return Status(ErrorCode::kNotFound, sequence.folder + ": no frame-*.pose.txt, the recording has no poses of its own");
+  if (!has_any_file)
+    return Status(ErrorCode::kNotFound, sequence.folder + ": no frame-*.pose.txt (or pose/N.txt), the recording has no poses of its own");
   return poses;
+}
+
+bool has_no_pose(const std::vector<std::string_view>& fields) {
+  if (std::any_of(fields.begin(), fields.end(), is_missing_number)) return true;
+  return fields.size() == 8 && std::all_of(fields.begin() + 4, fields.end(), [](std::string_view f) { return parse_double(f) == 0.0; });
+}
+
+/// Makes comments of the lines without a pose.
+LeftOut leave_out_lines_without_pose(std::string* text) {
+  LeftOut left_out;
+  for (const TextLine& line : content_lines(*text)) {
+    if (!has_no_pose(split_fields(line.text))) continue;
+    left_out.add(line.number);
+    (*text)[static_cast<std::size_t>(line.text.data() - text->data())] = '#';
+  }
+  return left_out;
 }
 
 }  // namespace
 
-Result<std::vector<StampedPose>> read_tum_trajectory(const std::string& path) {
+Result<std::vector<StampedPose>> read_tum_trajectory(const std::string& path, std::vector<std::string>* notes) {
   Result<std::string> text = read_file_text(path);
   if (!text) return text.status();
+  const LeftOut left_out = leave_out_lines_without_pose(&*text);
+  left_out.note(path, "line", "without a pose (nan, infinite, or a quaternion of zeros)", notes);
   std::vector<StampedPose> poses;
   const auto add = [&poses](std::int64_t stamp_ns, std::span<const double> v) -> Status {
     Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
@@ -78,6 +101,9 @@ Result<std::vector<StampedPose>> read_tum_trajectory(const std::string& path) {
   };
   constexpr double kLargest = std::numeric_limits<double>::max();
   if (Status status = read_stamped_rows(*text, path, "timestamp tx ty tz qx qy qz qw", "a number", kLargest, add); !status) return status;
+  if (poses.empty() && left_out.count > 0) {
+    return line_error(path, left_out.first_line, "no pose (nan, infinite, or a quaternion of zeros), and no other line has one");
+  }
   return poses;
 }
 
@@ -116,10 +142,10 @@ std::optional<Rigid3> pose_at(const std::vector<StampedPose>& trajectory, std::i
   return to_before_ns <= to_after_ns ? (after - 1)->T_world_camera : after->T_world_camera;
 }
 
-Result<std::vector<std::optional<Rigid3>>> read_embedded_poses(const Sequence& sequence) {
-  if (sequence.layout == "7scenes") return read_pose_matrices(sequence);
+Result<std::vector<std::optional<Rigid3>>> read_embedded_poses(const Sequence& sequence, std::vector<std::string>* notes) {
+  if (sequence.layout != "tum") return read_pose_matrices(sequence);
   const std::string path = (std::filesystem::path(sequence.folder) / "groundtruth.txt").string();
-  Result<std::vector<StampedPose>> trajectory = read_tum_trajectory(path);
+  Result<std::vector<StampedPose>> trajectory = read_tum_trajectory(path, notes);
   if (!trajectory && trajectory.status().code() == ErrorCode::kNotFound) {
     return Status(ErrorCode::kNotFound, path + ": missing, the recording has no poses of its own");
   }

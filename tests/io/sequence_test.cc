@@ -141,8 +141,7 @@ TEST(Sequence, BadListsNameFileAndLine) {
     const char* text;
     const char* part;
   } cases[] = {
-      {"# c\n2.0 a\n1.0 b\n", "rgb.txt:3: stamp '1.0' is not after"},
-      {"1.0 a\n1.0 b\n", "rgb.txt:2: stamp '1.0' is not after"},
+      {"# c\n2.0 a\n1.0 b\n", "rgb.txt:3: stamp '1.0' is before the one above"},
       {"1.0 a\n2.0 none.png\n", "none.png does not exist"},
       {"1.0 a\n\nxyz b\n", "rgb.txt:3: stamp 'xyz'"},
       {"1.0\n", "rgb.txt:1: expected"},
@@ -156,6 +155,42 @@ TEST(Sequence, BadListsNameFileAndLine) {
   folder.write("rgb.txt", "1.0 a\n");
   folder.write("depth.txt", "1.0 none.png\n");
   expect_error(read_sequence(folder.path()), ErrorCode::kInvalid, "depth.txt:1: image");
+}
+
+TEST(Sequence, RepeatedStampsAreLeftOutCountedAndNamed) {
+  const TestFolder folder;
+  touch(folder, {"a", "b", "c"});
+  folder.write("rgb.txt", "1.0 a\n1.0 b\nnan b\n2.0 c\n");
+  const auto sequence = read_sequence(folder.path());
+  ASSERT_TRUE(sequence.is_ok()) << sequence.status().message();
+  ASSERT_EQ(sequence->frames.size(), 2U);
+  EXPECT_EQ(sequence->frames[0].color_path, folder / "a");
+  EXPECT_EQ(sequence->frames[1].color_path, folder / "c");
+  EXPECT_EQ(sequence->frames[1].index, 1U);
+  ASSERT_EQ(sequence->notes.size(), 2U);
+  EXPECT_NE(sequence->notes[0].find("rgb.txt: 1 image left out with the stamp of the one before, line 2"), std::string::npos)
+      << sequence->notes[0];
+  EXPECT_NE(sequence->notes[1].find("without a time, line 3"), std::string::npos) << sequence->notes[1];
+}
+
+TEST(Sequence, SaysHowFarColourAndDepthAreApart) {
+  const TestFolder folder;
+  touch(folder, {"a", "b", "c", "d"});
+  folder.write("rgb.txt", "1.000 a\n1.100 b\n");
+  folder.write("depth.txt", "1.025 c\n1.1254 d\n");
+  const auto narrow = read_sequence(folder.path());
+  ASSERT_TRUE(narrow.is_ok());
+  EXPECT_EQ(narrow->frames[0].depth_path, "");
+  ASSERT_EQ(narrow->notes.size(), 1U);
+  EXPECT_NE(narrow->notes[0].find("2 colour and 2 depth images, none nearer than 25.0 ms; pairs may be 20.0 ms apart"), std::string::npos)
+      << narrow->notes[0];
+  const auto wide = read_sequence(folder.path(), {.pair_ms = 30});
+  ASSERT_TRUE(wide.is_ok());
+  EXPECT_EQ(wide->frames[1].depth_path, folder / "d");
+  EXPECT_TRUE(wide->notes.empty());
+  const auto half = read_sequence(folder.path(), {.pair_ms = 25.2});
+  ASSERT_EQ(half->notes.size(), 1U);
+  EXPECT_NE(half->notes[0].find("1 of the colour images without depth, typically 25.4 ms"), std::string::npos) << half->notes[0];
 }
 
 TEST(Sequence, NotASequence) {
@@ -178,7 +213,7 @@ TEST(Sequence, SevenScenesInOrderOfNumbers) {
   EXPECT_EQ(sequence->frames[1].depth_path, folder / "frame-000003.depth.png");
   EXPECT_EQ(sequence->frames[2].stamp_ns, 400000000);
   EXPECT_EQ(sequence->frames[2].depth_path, "");
-  EXPECT_EQ(read_sequence(folder.path(), 10)->frames[1].stamp_ns, 300000000);
+  EXPECT_EQ(read_sequence(folder.path(), {.frame_rate_hz = 10})->frames[1].stamp_ns, 300000000);
 }
 
 TEST(Sequence, SevenScenesTwiceTheSameFrame) {

@@ -56,8 +56,8 @@ TEST(Trajectory, BadLinesNameFileAndLine) {
       {"1 0 0 0 0 0 0 1 2\n", "t.tum:1: 9 fields"},
       {"x 0 0 0 0 0 0 1\n", "t.tum:1: stamp 'x'"},
       {"1 0 0 y 0 0 0 1\n", "'y' is not a number"},
-      {"1 0 0 nan 0 0 0 1\n", "'nan' is not a number"},
-      {"1 0 0 0 0 0 0 0\n", "unit length"},
+      {"1 0 0 nan 0 0 0 1\n", "t.tum:1: no pose (nan"},
+      {"1 0 0 0 0 0 0 0\n", "t.tum:1: no pose"},
       {"1 0 0 0 0 0 0 2\n", "unit length"},
       {"2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n", "t.tum:2: stamp is before"},
   };
@@ -67,6 +67,25 @@ TEST(Trajectory, BadLinesNameFileAndLine) {
     EXPECT_NE(result.status().message().find(one.part), std::string::npos) << result.status().message();
   }
   EXPECT_EQ(read_tum_trajectory(folder / "none").status().code(), ErrorCode::kNotFound);
+}
+
+TEST(Trajectory, LinesWithoutAPoseAreLeftOutCountedAndNamed) {
+  const TestFolder folder;
+  for (const char* bad :
+       {"nan nan nan nan nan nan nan", "0 0 0 0 0 0 0", "-1.#INF 0 0 0 0 0 1", "1 -inf 3 0 0 0 1", "1 2 3 -nan(ind) 0 0 1"}) {
+    SCOPED_TRACE(bad);
+    std::vector<std::string> notes;
+    const auto poses = read_tum_trajectory(
+        folder.write("t.tum", "# motion capture\n1.0 1 0 0 0 0 0 1\n1.1 " + std::string(bad) + "\n1.2 " + bad + "\n1.3 4 0 0 0 0 0 1\n"),
+        &notes);
+    ASSERT_TRUE(poses.is_ok()) << poses.status().message();
+    ASSERT_EQ(poses->size(), 2U);
+    EXPECT_EQ((*poses)[1].T_world_camera.translation.x(), 4);
+    EXPECT_FALSE(pose_at(*poses, 1'150'000'000)) << "in the gap there is no pose";
+    ASSERT_EQ(notes.size(), 1U);
+    EXPECT_NE(notes[0].find("t.tum: 2 lines left out"), std::string::npos) << notes[0];
+    EXPECT_NE(notes[0].find("the first in line 3"), std::string::npos) << notes[0];
+  }
 }
 
 TEST(Trajectory, PoseAtInterpolatesOverShortGapsOnly) {
@@ -111,7 +130,8 @@ TEST(Trajectory, SevenScenesPosesBecomeRotations) {
   // A quarter turn about z, a little stretched as in the dataset.
   folder.write("frame-000000.pose.txt", "0\t-1.0004\t0\t1\n1.0004\t0\t0\t2\n0\t0\t0.9996\t3\n0\t0\t0\t1\t\n");
   folder.write("frame-000002.pose.txt", "-1.#IND nan nan nan nan nan nan nan nan nan nan nan 0 0 0 1");
-  EXPECT_FALSE(read_embedded_poses(*sequence).is_ok()) << "-1.#IND is no number";
+  ASSERT_TRUE(read_embedded_poses(*sequence).is_ok());
+  EXPECT_FALSE((*read_embedded_poses(*sequence))[2]) << "a frame without a pose, in Windows' spelling";
   folder.write("frame-000002.pose.txt", "nan nan nan inf nan nan nan nan nan nan nan nan 0 0 0 1");
   const auto poses = read_embedded_poses(*sequence);
   ASSERT_TRUE(poses.is_ok()) << poses.status().message();

@@ -12,6 +12,7 @@
 #include "core/map/map_view.h"
 #include "tools/camloc-map/commands.h"
 #include "tools/common/command_line.h"
+#include "tools/common/named_choice.h"
 #include "tools/common/terminal_observer.h"
 #include "tools/mapping/build/map_pipeline.h"
 
@@ -86,7 +87,9 @@ void add_build_command(CLI::App& app, int& exit_code) {
   request.frames.poses.clear();
   CLI::App* command = app.add_subcommand("build", "Makes a map file from a recorded RGB-D walk.");
   command->footer(kFooter);
-  command->add_option("--sequence", request.frames.sequence, "Recording: replay://DIR or a folder, TUM RGB-D or 7-Scenes layout")
+  command
+      ->add_option("--sequence", request.frames.sequence,
+                   "Recording: replay://DIR or a folder; TUM RGB-D, associations.txt, 7-Scenes or ScanNet layout")
       ->required();
   command->add_option("--camera", arguments->camera_path, "Calibration: our TOML, or YAML of kalibr, ROS, OpenCV")->required();
   command->add_option("--out", request.map_path, "Map file to write; replaced only when the new one is complete")->required();
@@ -95,6 +98,10 @@ void add_build_command(CLI::App& app, int& exit_code) {
                       "COLMAP text model of the colour images); default: found by SLAM");
   command->add_option("--frames", request.frames.include, "Frames to use: start:stop:step[,...], Python slices (default: all)");
   command->add_option("--exclude", request.frames.exclude, "Frames to leave out, same notation");
+  command
+      ->add_option("--pair-ms", request.frames.pair_ms,
+                   "How far a colour image and its depth image may be apart, milliseconds (default 20)")
+      ->check(CLI::Range(0.0, 1000.0));
   command->add_option("--max-bytes", request.map.max_bytes, "Size limit of the file; the most useful landmarks are kept (accepts KB, MB)")
       ->transform(CLI::AsSizeValue(true));
   command->add_option("--extend", request.extend_path,
@@ -107,8 +114,9 @@ void add_build_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--poses-of", request.frames.pose_camera,
                    "Camera the poses belong to (default auto: embedded ones as the camera file says, a file's: color)")
-      ->transform(CLI::CheckedTransformer(cameras));
+      ->transform(tools::named_choice(cameras));
   command->add_option("--trajectory", request.trajectory_path, "Write where the camera was in each frame, TUM format");
+  command->add_flag("--believe-poses", request.believes_poses, "Make a map even of poses that the images contradict")->needs("--poses");
   command->add_flag("--resume", request.is_resumed, "Go on with a build of the same map that was interrupted");
   command->add_flag("!--no-level", request.is_levelled, "Do not turn the map so that z points up");
   command->add_option(

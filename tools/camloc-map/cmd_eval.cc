@@ -14,6 +14,7 @@
 #include "core/io/image_writer.h"
 #include "core/io/sequence.h"
 #include "tools/camloc-map/commands.h"
+#include "tools/common/named_choice.h"
 #include "tools/common/terminal_observer.h"
 #include "tools/mapping/build/posed_frames.h"
 #include "tools/mapping/cloud/point_cloud.h"
@@ -196,7 +197,7 @@ void add_reference_options(CLI::App* command, EvalArguments* arguments) {
   command
       ->add_option("--lidar-unit", arguments->lidar_unit_m,
                    "Unit of the scan: m, cm, mm, ft, us-ft (default: what a LAS file says, else m)")
-      ->transform(CLI::CheckedTransformer(units));
+      ->transform(tools::named_choice(units));
   command->add_option("--reference-sequence", arguments->reference.sequence,
                       "Instead of a scan: recording whose depth images and poses make a dense cloud (TUM RGB-D or 7-Scenes)");
   command->add_option("--camera", arguments->camera_path, "Calibration of that recording");
@@ -219,7 +220,7 @@ void add_alignment_options(CLI::App* command, EvalArguments* arguments) {
                    "Where the alignment starts: points, trajectory, datum (of the map), none (frames are equal), search; auto "
                    "(default): the "
                    "first of these that is given, else search")
-      ->transform(CLI::CheckedTransformer(starts));
+      ->transform(tools::named_choice(starts));
   command->add_flag("!--no-icp", arguments->options.has_icp, "Measure at the start, without fitting the surfaces");
   command->add_option("--trim", arguments->options.trim, "Share of the closest correspondences that ICP uses (default 0.9)")
       ->check(CLI::Range(0.1, 1.0));

@@ -169,6 +169,7 @@ Status eval(const EvalArguments& arguments) {
   if (!estimate) return estimate.status();
   auto reference = read_reference(arguments, arguments.reference_path, arguments.frames, *estimate);
   if (!reference) return reference.status();
+  for (const std::string& note : reference->notes) print_error("camloc", note);
   const bool is_counted = estimate->num_frames.has_value() && arguments.frames.empty();
   const std::uint64_t num_frames =
       is_counted ? *estimate->num_frames : std::max<std::uint64_t>(reference->num_frames, estimate->poses.size());

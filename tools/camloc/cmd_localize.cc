@@ -134,6 +134,10 @@ Status localize(const LocalizeArguments& arguments) {
   auto run = open_sequence_run(arguments.run);
   if (!run) return run.status();
 
+  for (const std::string& note : run->source->info().notes) print_error("camloc", note);
+  if (arguments.run.use_depth && run->source->info().depth_width == 0 && run->source->info().color_width != 0) {
+    print_error("camloc", arguments.run.sequence_url + ": no frame has depth; localizing by colour alone");
+  }
   RunLog log;
   TerminalObserver observer;
   const std::uint64_t num_frames = run->source->info().num_frames.value_or(0);

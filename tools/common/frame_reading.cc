@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "drivers/source_url.h"
+
 namespace camloc::tools {
 
 Result<FrameCounts> read_frames(FrameSource& source, const FrameVisitor& on_frame, const WorkObserver& observer) {
@@ -26,12 +28,12 @@ Result<FrameCounts> read_frames(FrameSource& source, const FrameVisitor& on_fram
 }
 
 Status all_frames_corrupt(const FrameCounts& counts) {
-  return {ErrorCode::kCorrupt, "none of " + std::to_string(counts.num_frames) + " frames could be read, the first because of " +
-                                   counts.first_corrupt + "; record or copy the sequence again"};
+  return {ErrorCode::kCorrupt,
+          "none of " + std::to_string(counts.num_frames) + " frames could be read, the first because of " + counts.first_corrupt};
 }
 
 std::string with_selection(const std::string& url, const std::string& frames, const std::string& exclude) {
-  std::string out = url;
+  std::string out = as_source_url(url);
   const auto add = [&out](const std::string& key, const std::string& value) {
     if (value.empty()) return;
     out += (out.find('?') == std::string::npos ? "?" : "&") + key + "=" + value;

@@ -9,6 +9,7 @@
 
 #include "core/io/file_bytes.h"
 #include "core/io/sequence.h"
+#include "core/io/text.h"
 #include "tools/common/text_format.h"
 
 namespace camloc::tools {
@@ -111,6 +112,11 @@ Result<EstimatedTrajectory> read_trajectory(const std::string& path) {
       return {ErrorCode::kInvalid, path + ":" + std::to_string(number) + ": incomplete comment '" + line.substr(0, 40) + "'"};
     }
     if (next_pose >= poses->size()) break;
+    const std::vector<std::string_view> fields = split_fields(line);
+    if (fields.empty() || parse_seconds_ns(fields[0]) != (*poses)[next_pose].stamp_ns) {  // a line without a pose was left out
+      covariance.reset();
+      continue;
+    }
     const StampedPose& pose = (*poses)[next_pose++];
     trajectory.poses.push_back({pose.stamp_ns, pose.T_world_camera, covariance});
     covariance.reset();

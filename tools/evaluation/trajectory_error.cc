@@ -47,18 +47,19 @@ ErrorStatistics error_statistics(std::vector<double> values) {
 
 Result<RecordedPoses> read_recorded_poses(const std::string& path, const std::string& frames, const std::optional<Rigid3>& T_color_depth) {
   if (!std::filesystem::is_directory(path)) {
-    auto poses = read_tum_trajectory(path);
+    std::vector<std::string> notes;
+    auto poses = read_tum_trajectory(path, &notes);
     if (!poses) return poses.status();
     const std::uint64_t count = poses->size();
-    return RecordedPoses{std::move(poses).value(), count};
+    return RecordedPoses{std::move(poses).value(), count, std::move(notes)};
   }
   auto sequence = read_sequence(path);
   if (!sequence) return sequence.status();
   auto selected = select_frames(frames, "", sequence->frames.size());
   if (!selected) return selected.status();
-  auto poses = read_embedded_poses(*sequence);
-  if (!poses) return poses.status();
   RecordedPoses recorded;
+  auto poses = read_embedded_poses(*sequence, &recorded.notes);
+  if (!poses) return poses.status();
   recorded.num_frames = selected->size();
   for (const std::size_t i : *selected) {
     if (!(*poses)[i]) continue;

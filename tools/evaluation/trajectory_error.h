@@ -20,6 +20,7 @@ namespace camloc::tools {
 struct RecordedPoses {
   std::vector<StampedPose> poses;  ///< T_world_camera of the colour camera, of the selected frames that have one
   std::uint64_t num_frames = 0;    ///< selected ones, with and without a pose
+  std::vector<std::string> notes;  ///< what was left out, for people: a line each
 };
 
 /// RgbdCamera::T_color_depth where recorded poses belong to the depth camera.

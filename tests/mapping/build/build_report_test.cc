@@ -86,6 +86,13 @@ TEST(BuildReport, TheVerticalIsTold) {
   s.slam.emplace().up.emplace();
   s.slam->up->camera_height_m = 1.4;
   EXPECT_TRUE(contains(format_table(s), "from the floor, 1.40 m below the cameras"));
+  EXPECT_FALSE(contains(format_table(s), "unit_m"));
+  s.slam->up->camera_height_m = 6.96;
+  s.notes = {"walk/rgb.txt: 1 image left out"};
+  EXPECT_TRUE(contains(format_table(s), "WARNING the floor is 7.0 m below the cameras")) << format_table(s);
+  EXPECT_TRUE(contains(format_table(s), "walk/rgb.txt: 1 image left out"));
+  EXPECT_TRUE(contains(format_json(s), "is unit_m of the camera file right?"));
+  s.slam->up->camera_height_m = 1.4;
   s.slam->up->source = GravitySource::kAccelerometer;
   s.slam->up->sigma_rad = 0.01745;
   EXPECT_TRUE(contains(format_table(s), "from the accelerometer, to 1.0 deg"));

@@ -19,6 +19,18 @@ double bytes_per_landmark(const BuildSummary& s) {
 }
 
 constexpr std::size_t kMaxSpotsShown = 8;
+constexpr double kHighCameraM = 3;  // above the floor; people and robots carry theirs below
+
+/// What was left out, and what is hardly true.
+std::vector<std::string> all_notes(const BuildSummary& s) {
+  std::vector<std::string> notes = s.notes;
+  if (!s.slam || !s.slam->up || s.slam->up->source != GravitySource::kFloor || s.slam->up->camera_height_m < kHighCameraM) return notes;
+  notes.push_back(tools::text_of(
+      "WARNING the floor is %.1f m below the cameras, more than anybody carries one: is unit_m of the camera file right? A map "
+      "with a wrong unit agrees with itself and is too large",
+      s.slam->up->camera_height_m));
+  return notes;
+}
 
 std::string vertical_text(const BuildSummary& s) {
   if (s.survey && s.survey->is_written) return "from control points";
@@ -94,9 +106,18 @@ std::string format_table(const BuildSummary& s) {
   std::string text;
   append_text(&text, "%-22s%s\n", "map", s.map_path.c_str());
   append_text(&text, "%-22s%u of %llu recorded, %llu selected\n", "frames used", b.num_frames, llu(s.num_recorded), llu(s.num_selected));
+  for (const std::string& note : all_notes(s)) append_text(&text, "%-22s%s\n", "note", note.c_str());
   append_text(&text, "%-22s%llu without pose, %llu without depth, %llu broken\n", "frames skipped", llu(s.num_without_pose),
               llu(s.num_without_depth), llu(s.reading.num_corrupt));
   if (s.slam) append_slam(s, &text);
+  if (s.pose_verdict && s.pose_verdict->num_motions >= PoseVerdict::kMinMotions) {
+    append_text(&text, "%-22s%.1f cm, %.1f deg off between neighbouring frames (%zu pairs that moved by %.1f cm, %.1f deg; medians)\n",
+                "given poses", 100 * s.pose_verdict->given.translation_m, degrees(s.pose_verdict->given.rotation_rad),
+                s.pose_verdict->num_motions, 100 * s.pose_verdict->moved_m, degrees(s.pose_verdict->turned_rad));
+  } else if (s.pose_verdict) {
+    append_text(&text, "%-22snot checked against the images: too few neighbouring frames that moved and could be compared\n",
+                "given poses");
+  }
   if (s.model_scale) append_text(&text, "%-22s%s\n", "scale of the model", describe_scale(*s.model_scale).c_str());
   append_text(&text, "%-22s%llu\n", "observations", llu(b.num_observations));
   append_text(&text, "%-22s%u of %u\n", "landmarks kept", b.num_landmarks, b.num_landmarks_before);
@@ -126,6 +147,7 @@ std::string format_table(const BuildSummary& s) {
 std::string format_json(const BuildSummary& s) {
   const MapBuildReport& b = s.build;
   Json json{{"map", s.map_path}, {"sequence", s.sequence}, {"camera", s.camera}};
+  json["notes"] = all_notes(s);
   json["frames"] = {{"recorded", s.num_recorded},         {"selected", s.num_selected},           {"used", b.num_frames},
                     {"without_pose", s.num_without_pose}, {"without_depth", s.num_without_depth}, {"broken", s.reading.num_corrupt}};
   json["is_partial"] = s.is_partial;

@@ -71,6 +71,10 @@ Status finish_map(const BuildRequest& request, const std::string& name, const st
   summary->consistency_sigma_m = map->pose_sigma_m;
   summary->consistency_sigma_rad = map->pose_sigma_rad;
   summary->deformation = deformation;
+  if (summary->pose_verdict) {  // no map is better than its poses are from one frame to the next
+    map->pose_sigma_m = std::max(map->pose_sigma_m, summary->pose_verdict->sigma_m);
+    map->pose_sigma_rad = std::max(map->pose_sigma_rad, summary->pose_verdict->sigma_rad);
+  }
   map->pose_sigma_m = std::hypot(map->pose_sigma_m, deformation.sigma_m);
   map->pose_sigma_rad = std::hypot(map->pose_sigma_rad, deformation.sigma_rad);
   map->name = name;
@@ -107,13 +111,36 @@ Status add_frames(const PosedFrames& frames, MapBuilder* builder, WorkObserver& 
   return Status::ok();
 }
 
+/// A recording that has depth images, none of which belongs to a colour image, says so in its notes.
+Status no_depth(const BuildRequest& request, const SelectedFrames& frames) {
+  if (!frames.notes.empty()) return {ErrorCode::kInvalid, frames.notes.back() + "; a map needs depth"};
+  return {ErrorCode::kInvalid, request.frames.sequence + ": has no depth images; a map needs depth"};
+}
+
+/// Refuses poses that the images contradict, unless they are to be believed.
+Status judge_given_poses(const BuildRequest& request, const PosedFrames& frames, WorkObserver& observer, BuildSummary* summary) {
+  auto verdict = check_poses(request.frames, frames, request.camera, request.map.orb, observer);
+  if (!verdict.is_ok()) return verdict.status();
+  summary->pose_verdict = std::move(verdict).value();
+  if (!summary->pose_verdict->is_contradicted()) return Status::ok();
+  const std::string what =
+      describe_contradiction(*summary->pose_verdict, request.frames.poses == "embedded" ? frames.folder : request.frames.poses);
+  if (!request.believes_poses) return {ErrorCode::kInvalid, what + "; --believe-poses makes a map of them nevertheless"};
+  summary->notes.push_back("WARNING " + what);
+  return Status::ok();
+}
+
 Status build_from_poses(const BuildRequest& request, WorkObserver& observer, BuildSummary* summary) {
   const auto frames = find_posed_frames(request.frames, request.camera);
   if (!frames.is_ok()) return frames.status();
   summary->num_recorded = frames->num_recorded;
   summary->num_selected = frames->num_selected;
   summary->num_without_pose = frames->num_without_pose;
+  summary->notes = frames->notes;
+  if (!frames->has_depth) return no_depth(request, *frames);
   summary->model_scale = frames->scale;
+  if (Status judged = judge_given_poses(request, *frames, observer, summary); !judged.is_ok()) return judged;
+  if (observer.should_stop()) return interrupted(request.map_path);
   MapBuilder builder(request.camera, recording_options(request));
   if (const Status added = add_frames(frames.value(), &builder, observer, summary); !added.is_ok()) return added;
   if (observer.should_stop()) return interrupted(request.map_path);
@@ -133,16 +160,17 @@ struct TrackedRecording {
   std::optional<WcsDatum> datum;  ///< where the largest segment lies in the site
 };
 
-Result<TrackedRecording> prepare_recording(const BuildRequest& request) {
+Result<TrackedRecording> prepare_recording(const BuildRequest& request, BuildSummary* summary) {
   TrackedRecording recording;
   const auto frames = find_frames(request.frames);
   if (!frames.is_ok()) return frames.status();
-  if (!frames->has_depth) return Status(ErrorCode::kInvalid, request.frames.sequence + ": has no depth images; a map needs depth");
+  if (!frames->has_depth) return no_depth(request, *frames);
+  summary->notes = frames->notes;
   recording.frames = frames.value();
   SlamOptions slam = request.slam;
   slam.orb = request.map.orb;
   if (!request.survey.points_path.empty()) {
-    auto survey = read_survey(request.survey, recording.frames.folder, request.camera);
+    auto survey = read_survey(request.survey, recording.frames.folder, request.camera, request.frames.pair_ms);
     if (!survey.is_ok()) return survey.status();
     recording.survey = std::move(survey).value();
     slam.required_keyframes = frames_of(*recording.survey);
@@ -266,7 +294,7 @@ Status write_trajectory(const BuildRequest& request, const SlamResult& result, s
 }
 
 Status build_from_recording(const BuildRequest& request, WorkObserver& observer, BuildSummary* summary) {
-  auto prepared = prepare_recording(request);
+  auto prepared = prepare_recording(request, summary);
   if (!prepared.is_ok()) return prepared.status();
   TrackedRecording recording = std::move(prepared).value();
   summary->num_recorded = recording.frames.num_recorded;

@@ -18,6 +18,7 @@
 #include "core/slam/slam.h"
 #include "tools/common/frame_reading.h"
 #include "tools/mapping/build/merge_pipeline.h"
+#include "tools/mapping/build/pose_check.h"
 #include "tools/mapping/build/posed_frames.h"
 #include "tools/mapping/build/recording_site.h"
 #include "tools/mapping/build/recording_tracking.h"
@@ -35,6 +36,7 @@ struct BuildRequest {
   std::string extend_path;      ///< map that the recording is merged into, see merge_pipeline.h; empty: a map of its own
   std::string name;             ///< of the map; empty: the folder's
   std::string trajectory_path;  ///< where the camera was, TUM format; empty: not written
+  bool believes_poses = false;  ///< make a map of given poses that the images contradict
   bool is_resumed = false;
   bool is_levelled = true;         ///< turn the map so that z is up where floor or accelerometer show which way that is
   std::string accelerometer_path;  ///< empty: accelerometer.txt of the recording, if there is one and no floor
@@ -61,12 +63,14 @@ struct SubmapSummary {
 struct BuildSummary {
   std::string map_path, sequence, camera;
   std::uint64_t num_recorded = 0, num_selected = 0, num_without_pose = 0, num_without_depth = 0;
-  tools::FrameCounts reading;  ///< broken frames, and what was wrong with the first of them
-  bool is_partial = false;     ///< interrupted: a map of the first part
+  std::vector<std::string> notes;  ///< what was left out of recording and poses: a line each
+  tools::FrameCounts reading;      ///< broken frames, and what was wrong with the first of them
+  bool is_partial = false;         ///< interrupted: a map of the first part
   std::optional<SlamSummary> slam;
-  std::optional<ModelScale> model_scale;  ///< of the COLMAP model that the poses are from
-  std::optional<GeorefSummary> survey;    ///< control points, where there were some
-  std::vector<SubmapSummary> submaps;     ///< besides the map itself
+  std::optional<PoseVerdict> pose_verdict;  ///< of given poses: what the images say
+  std::optional<ModelScale> model_scale;    ///< of the COLMAP model that the poses are from
+  std::optional<GeorefSummary> survey;      ///< control points, where there were some
+  std::vector<SubmapSummary> submaps;       ///< besides the map itself
   MapBuildReport build;
   std::optional<MergeSummary> merge;                          ///< with the map that was extended; `build` then counts the recording alone
   double consistency_sigma_m = 0, consistency_sigma_rad = 0;  ///< of the poses between views, per axis

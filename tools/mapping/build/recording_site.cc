@@ -11,8 +11,10 @@
 #include <unordered_map>
 
 #include "core/io/sequence.h"
+#include "drivers/source_url.h"
 #include "drivers/sources.h"
 #include "tools/common/frame_reading.h"
+#include "tools/common/text_format.h"
 
 namespace camloc::mapping {
 namespace {
@@ -126,7 +128,7 @@ void level(const Eigen::Vector3d& up_map, std::uint32_t segment, SlamResult* res
   }
 }
 
-Result<Survey> read_survey(const SurveyRequest& request, const std::string& folder, const RgbdCamera& camera) {
+Result<Survey> read_survey(const SurveyRequest& request, const std::string& folder, const RgbdCamera& camera, double pair_ms) {
   Survey survey;
   auto points = read_control_points(request.points_path);
   if (!points.is_ok()) return points.status();
@@ -140,7 +142,8 @@ Result<Survey> read_survey(const SurveyRequest& request, const std::string& fold
                                      ": a build knows pixels of frames only; take this point to 'camloc map georef' afterwards"};
   }
   const std::vector<std::uint64_t> frames = frames_of(survey);
-  auto source = open_frame_source(tools::with_selection("replay://" + folder, tools::selection_of({frames.begin(), frames.end()})));
+  auto source = open_frame_source(tools::with_selection(replay_url(folder) + "?pair_ms=" + tools::text_of("%.3f", pair_ms),
+                                                        tools::selection_of({frames.begin(), frames.end()})));
   if (!source.is_ok()) return source.status().with_context(request.observed_path);
   const DepthLookup lookup(camera);
   const auto measure = [&](FrameBuffer& buffer) {

@@ -40,7 +40,8 @@ struct Survey {
 };
 
 /// Reads both files and measures the pixels in the frames they name. kInvalid for observations that are no pixels.
-[[nodiscard]] Result<Survey> read_survey(const SurveyRequest& request, const std::string& folder, const RgbdCamera& camera);
+[[nodiscard]] Result<Survey> read_survey(const SurveyRequest& request, const std::string& folder, const RgbdCamera& camera,
+                                         double pair_ms = 20);
 /// Frames that must become keyframes, ascending.
 [[nodiscard]] std::vector<std::uint64_t> frames_of(const Survey& survey);
 

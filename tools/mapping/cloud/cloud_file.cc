@@ -4,12 +4,12 @@
 #include <array>
 #include <bit>
 #include <cctype>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 
 #include "core/io/text.h"
-#include "tools/common/text_format.h"
 #include "tools/mapping/cloud/cloud_input.h"
 #include "tools/mapping/cloud/point_cloud.h"
 
@@ -61,11 +61,14 @@ Status check_steps(const CloudInput& input, PointCloud* cloud) {
   Eigen::Index axis = 0;
   const double step_m = cloud->step_m.maxCoeff(&axis);
   if (step_m < kNotedStepM) return Status::ok();
-  const std::string what =
-      tools::text_of("coordinates around %c = %.0f hold no more than 32-bit floats do: steps of %.2g m. Export it with %s", "xyz"[axis],
-                     cloud -> origin_m[axis] / cloud -> unit_m, step_m, "double precision, or shifted to an origin near the site");
+  char what[200];
+  std::snprintf(
+      what, sizeof(what),
+      "coordinates around %c = %.0f hold no more than 32-bit floats do: steps of %.2g m. Export it with double precision, or shifted to "
+      "an origin near the site",
+      "xyz"[axis], cloud -> origin_m[axis] / cloud -> unit_m, step_m);
   if (step_m > kMaxStepM) return input.error(ErrorCode::kInvalid, what);
-  cloud->warnings.push_back("STEPS: " + what);
+  cloud->warnings.push_back(std::string("STEPS: ") + what);
   return Status::ok();
 }
 

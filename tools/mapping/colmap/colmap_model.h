@@ -98,12 +98,13 @@ struct ModelScale {
 struct ColmapPoses {
   std::vector<std::optional<Rigid3>> T_map_camera;  ///< of the colour camera, per frame of the recording; metres
   ModelScale scale;
+  std::vector<std::string> notes;  ///< what was left out, and where the model's lens is not the camera file's: a line each
 };
 
 /// Reads the model, matches names, measures its scale at up to 60 images evenly over the recording, and turns poses into
-/// metres. The map's frame is the model's, scaled. Errors: those of read_colmap_model and estimate_model_scale; kInvalid, naming the
-/// image: a name that no frame or several frames have (folders in front do not count), or that two images have; another image size
-/// than the camera's.
+/// metres. The map's frame is the model's, scaled. Images of the model that are none of the recording are left out. Errors: those of
+/// read_colmap_model and estimate_model_scale; kInvalid, naming the image: no name that a frame has, one that several frames have (folders
+/// in front do not count), or that two images have; another image size than the camera's.
 [[nodiscard]] Result<ColmapPoses> read_colmap_poses(const std::string& folder, const Sequence& sequence, const RgbdCamera& camera);
 
 }  // namespace camloc::mapping

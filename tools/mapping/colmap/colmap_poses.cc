@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/geometry/depth_registration.h"
+#include "core/io/camera_file.h"
 #include "core/io/image_file.h"
 #include "core/io/text.h"
 #include "tools/common/text_format.h"
@@ -14,17 +15,49 @@ namespace camloc::mapping {
 namespace {
 
 constexpr std::size_t kMaxScaleImages = 60;
+constexpr double kMaxLensDifferencePx = 4;  // self-calibration scatters by one or two
 
 std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
 
+/// Of the cameras that took an image.
 Status check_image_sizes(const ColmapModel& model, const Intrinsics& color) {
   for (const ColmapCamera& camera : model.cameras) {
+    if (std::none_of(model.images.begin(), model.images.end(), [&](const ColmapImage& image) { return image.camera_id == camera.id; }))
+      continue;
     if (camera.width == color.width && camera.height == color.height) continue;
     return {ErrorCode::kInvalid, tools::text_of("camera %u of the model takes images of %dx%d, the camera file says %dx%d; "
                                                 "make the model from the recording's own images",
                                                 camera.id, camera.width, camera.height, color.width, color.height)};
   }
   return Status::ok();
+}
+
+/// Where the model's lens and the camera file's show the same ray, pixels apart; one line for the camera that is worst.
+void note_other_lens(const ColmapModel& model, const Intrinsics& color, std::vector<std::string>* notes) {
+  double worst_px = kMaxLensDifferencePx;
+  std::string note;
+  for (const ColmapCamera& camera : model.cameras) {
+    const auto lens = colmap_intrinsics(camera.model, camera.width, camera.height, camera.parameters);
+    if (!lens.is_ok()) {
+      notes->push_back("the lens of the model's camera " + std::to_string(camera.id) + " was not compared: " + lens.status().message());
+      continue;
+    }
+    if (camera.width != color.width || camera.height != color.height) continue;  // took no image of the recording
+    double most_px = 0;
+    for (int i = 0; i <= 8; ++i) {
+      for (int j = 0; j <= 8; ++j) {
+        const Eigen::Vector2d pixel((color.width - 1) * i / 8.0, (color.height - 1) * j / 8.0);
+        most_px = std::max(most_px, (lens->distort(color.undistort(pixel)) - pixel).norm());
+      }
+    }
+    if (most_px <= worst_px) continue;
+    worst_px = most_px;
+    note = tools::text_of(
+        "camera %u of the model (fx %.1f px) and the camera file (fx %.1f px) disagree: the same ray is up to %.1f px apart. "
+        "One of them is wrong; 'camloc camera import %s' takes over the model's",
+        camera.id, lens->fx, color.fx, most_px, "cameras.txt");
+  }
+  if (!note.empty()) notes->push_back(note);
 }
 
 void append_pairs(const ColmapModel& model, std::uint32_t index, const Intrinsics& size, const DepthLookup& lookup,
@@ -69,18 +102,27 @@ Result<std::vector<DepthPair>> measure_depths(const ColmapModel& model, const st
 }
 
 /// Frame index of each image of the model: the frame whose colour file has the same name; folders in front do not count.
-Result<std::vector<std::size_t>> match_image_names(const ColmapModel& model, const Sequence& sequence) {
+/// Images that no frame fits are taken out of the model.
+Result<std::vector<std::size_t>> match_image_names(const Sequence& sequence, ColmapModel* model, std::vector<std::string>* notes) {
   std::map<std::string, std::vector<std::size_t>> frames_of_name;
   for (std::size_t i = 0; i < sequence.frames.size(); ++i) frames_of_name[file_name(sequence.frames[i].color_path)].push_back(i);
   std::vector<std::size_t> frame_of_image;
   std::map<std::size_t, std::string> image_of_frame;
-  for (const ColmapImage& image : model.images) {
+  const auto is_foreign = [&](const ColmapImage& image) { return !frames_of_name.contains(file_name(image.name)); };
+  const auto first_foreign = std::find_if(model->images.begin(), model->images.end(), is_foreign);
+  const std::string foreign_name = first_foreign == model->images.end() ? "" : first_foreign->name;
+  const std::size_t num_foreign = std::erase_if(model->images, is_foreign);
+  if (model->images.empty()) {
+    return {ErrorCode::kInvalid, "image " + in_quotes(foreign_name) + " of the model is no colour image of the recording (its first is " +
+                                     in_quotes(file_name(sequence.frames.front().color_path)) +
+                                     "), and no other image is; names must be the same but for folders"};
+  }
+  if (num_foreign > 0) {
+    notes->push_back(std::to_string(num_foreign) + (num_foreign == 1 ? " image of the model is" : " images of the model are") +
+                     " none of the recording, left out: " + in_quotes(foreign_name) + (num_foreign == 1 ? "" : " and so on"));
+  }
+  for (const ColmapImage& image : model->images) {
     const auto frames = frames_of_name.find(file_name(image.name));
-    if (frames == frames_of_name.end()) {
-      return {ErrorCode::kInvalid, "image " + in_quotes(image.name) + " of the model is no colour image of the recording (its first is " +
-                                       in_quotes(file_name(sequence.frames.front().color_path)) +
-                                       "); names must be the same but for folders"};
-    }
     if (frames->second.size() > 1) {
       return {ErrorCode::kInvalid,
               "image " + in_quotes(image.name) + " of the model fits several frames of the recording; file names must differ"};
@@ -98,16 +140,18 @@ Result<std::vector<std::size_t>> match_image_names(const ColmapModel& model, con
 }  // namespace
 
 Result<ColmapPoses> read_colmap_poses(const std::string& folder, const Sequence& sequence, const RgbdCamera& camera) {
-  const auto model = read_colmap_model(folder);
+  auto model = read_colmap_model(folder);
   if (!model) return model.status();
-  if (const Status sizes = check_image_sizes(*model, camera.color); !sizes.is_ok()) return sizes.with_context(folder);
-  const auto frame_of_image = match_image_names(*model, sequence);
+  std::vector<std::string> notes;
+  const auto frame_of_image = match_image_names(sequence, &*model, &notes);
   if (!frame_of_image) return frame_of_image.status().with_context(folder);
+  if (const Status sizes = check_image_sizes(*model, camera.color); !sizes.is_ok()) return sizes.with_context(folder);
+  note_other_lens(*model, camera.color, &notes);
   const auto pairs = measure_depths(*model, *frame_of_image, sequence, camera);
   if (!pairs) return pairs.status();
   const auto scale = estimate_model_scale(*pairs);
   if (!scale) return scale.status().with_context(folder);
-  ColmapPoses poses{std::vector<std::optional<Rigid3>>(sequence.frames.size()), *scale};
+  ColmapPoses poses{std::vector<std::optional<Rigid3>>(sequence.frames.size()), *scale, std::move(notes)};
   for (std::size_t i = 0; i < model->images.size(); ++i) {
     Rigid3 T_map_camera = model->images[i].T_camera_world.inverse();
     T_map_camera.translation *= scale->metres_per_unit;
