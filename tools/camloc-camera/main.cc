@@ -82,8 +82,10 @@ Status run(Arguments arguments) {
   arguments.options.wants_depth = !arguments.skips_depth;
   if (arguments.source_url.empty() == arguments.sequence_path.empty())
     return {ErrorCode::kInvalid, "give one of --source URL and --sequence DIR"};
-  Status status = tools::check_output_path("--out", arguments.out_path);
-  if (status && !arguments.png_path.empty()) status = tools::check_output_path("--png", arguments.png_path);
+  std::vector<tools::NamedPath> outputs{{"--out", arguments.out_path}};
+  if (!arguments.png_path.empty()) outputs.push_back({"--png", arguments.png_path});
+  Status status = tools::check_outputs(
+      outputs, {{"--source", arguments.source_url}, {"--sequence", arguments.sequence_path}, {"--camera", arguments.camera_path}});
   if (!status) return status;
   if (!arguments.camera_path.empty()) {
     const Result<RgbdCamera> known = read_camera_file(arguments.camera_path);
@@ -95,7 +97,7 @@ Status run(Arguments arguments) {
   const Result<Calibration> calibration = calibrate(*views, arguments.options);
   // Arguments were right: what the images do not show is a failure.
   if (!calibration) return {ErrorCode::kUnavailable, calibration.status().message()};
-  std::fputs(format_report(*calibration, *views).c_str(), stdout);
+  static_cast<void>(tools::print_text(format_report(*calibration, *views)));
   if (status = write_results(arguments, *calibration, *views); !status) return status;
   std::printf("written     %s\n", arguments.out_path.c_str());
   return Status::ok();

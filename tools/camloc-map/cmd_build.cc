@@ -34,16 +34,28 @@ struct BuildArguments {
   bool is_json = false;
 };
 
+/// --extend may be --out: the old map is in the new one.
+Status check_outputs_of(const BuildArguments& arguments) {
+  const BuildRequest& request = arguments.request;
+  std::vector<tools::NamedPath> outputs{{"--out", request.map_path}};
+  if (request.frames.poses.empty()) outputs.push_back({"--out (its .views)", frame_log_path(request.map_path)});
+  if (!request.trajectory_path.empty()) outputs.push_back({"--trajectory", request.trajectory_path});
+  std::vector<tools::NamedPath> inputs{{"--sequence", request.frames.sequence},  {"--camera", arguments.camera_path},
+                                       {"--poses", request.frames.poses},        {"--accelerometer", request.accelerometer_path},
+                                       {"--points", request.survey.points_path}, {"--observed", request.survey.observed_path}};
+  Status status = tools::check_outputs(outputs, inputs);
+  if (status.is_ok() && !request.extend_path.empty())
+    status = tools::check_outputs({outputs.begin() + 1, outputs.end()}, {{"--extend", request.extend_path}});
+  return status;
+}
+
 Status check_arguments(const BuildArguments& arguments) {
   const BuildRequest& request = arguments.request;
-  if (const Status output = tools::check_output_path("--out", request.map_path); !output.is_ok()) return output;
+  if (const Status outputs = check_outputs_of(arguments); !outputs.is_ok()) return outputs;
   const bool has_poses = !request.frames.poses.empty();
   if (has_poses && request.is_resumed) return {ErrorCode::kInvalid, "--resume: goes with a build without --poses"};
   if (has_poses && !request.trajectory_path.empty())
     return {ErrorCode::kInvalid, "--trajectory: with --poses the trajectory is known already"};
-  if (!request.trajectory_path.empty()) {
-    if (const Status output = tools::check_output_path("--trajectory", request.trajectory_path); !output.is_ok()) return output;
-  }
   if (has_poses && !request.survey.points_path.empty())
     return {ErrorCode::kInvalid, "--points: goes with a build without --poses; 'camloc map georef' fits a finished map"};
   if (!request.extend_path.empty()) {

@@ -32,11 +32,10 @@ Status check_outputs(const ExportArguments& arguments) {
   if (arguments.ply_path.empty() && arguments.colmap_folder.empty() && arguments.tum_path.empty()) {
     return {ErrorCode::kInvalid, "nothing to write; give --ply FILE, --colmap DIR or --tum FILE"};
   }
-  for (const auto& [option, path] : {std::pair("--ply", &arguments.ply_path), std::pair("--tum", &arguments.tum_path)}) {
-    if (path->empty()) continue;
-    if (const Status output = tools::check_output_path(option, *path); !output.is_ok()) return output;
-  }
-  return Status::ok();
+  std::vector<tools::NamedPath> outputs;
+  if (!arguments.ply_path.empty()) outputs.push_back({"--ply", arguments.ply_path});
+  if (!arguments.tum_path.empty()) outputs.push_back({"--tum", arguments.tum_path});
+  return tools::check_outputs(outputs, {{"the map", arguments.map_path}});
 }
 
 Status write_exports(const MapView& map, const ExportArguments& arguments) {

@@ -137,7 +137,9 @@ Status georef(const GeorefArguments& arguments, GeorefSummary* summary) {
 int run(const GeorefArguments& arguments) {
   GeorefSummary summary = arguments.summary;
   if (summary.out_path.empty()) summary.out_path = summary.map_path;
-  if (const Status output = tools::check_output_path("--out", summary.out_path); !output) return report_error(output, 2);
+  // --out may be the map, which is in the new one.
+  const std::vector<tools::NamedPath> inputs{{"--points", summary.points_path}, {"--observed", summary.observed_path}};
+  if (const Status output = tools::check_outputs({{"--out", summary.out_path}}, inputs); !output) return report_error(output, 2);
   if (const Status status = georef(arguments, &summary); !status) { return report(status); }
   const std::string text = arguments.is_json ? format_json(summary) : format_table(summary);
   const bool is_printed = tools::print_text(text);

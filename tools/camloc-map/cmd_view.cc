@@ -44,7 +44,8 @@ Status show(const MapView& map, const ViewArguments& arguments) {
 }
 
 int run(const ViewArguments& arguments) {
-  if (const Status output = tools::check_output_path("--png", arguments.png_path); !output.is_ok()) return report_error(output, 2);
+  const std::vector<tools::NamedPath> inputs{{"the map", arguments.map_path}, {"--trajectory", arguments.trajectory_path}};
+  if (const Status output = tools::check_outputs({{"--png", arguments.png_path}}, inputs); !output.is_ok()) return report_error(output, 2);
   const auto map = MapView::open(arguments.map_path);
   if (!map.is_ok()) return report_error(map.status(), 1);
   const Status shown = show(map.value(), arguments);

@@ -16,6 +16,7 @@
 #include "drivers/sources.h"
 #include "tools/camloc/commands.h"
 #include "tools/common/command_line.h"
+#include "tools/common/json_text.h"
 #include "tools/common/text_format.h"
 
 namespace camloc::tools {
@@ -96,15 +97,15 @@ Status show(const CameraArguments& arguments) {
   if (!hints) return hints.status();
   const Result<RgbdCamera> camera = read_camera_file(arguments.path, *hints);
   if (!camera) return camera.status();
-  std::printf("camera      %s\n%s%s", camera->name.c_str(), format_intrinsics("colour", camera->color).c_str(),
+  std::printf("camera      %s\n%s%s", printable(camera->name).c_str(), format_intrinsics("colour", camera->color).c_str(),
               format_depth(*camera).c_str());
   if (camera->poses_are_of_depth_camera) std::printf("poses       recorded ones belong to the depth camera\n");
-  for (const std::string& note : notes) std::printf("note        %s\n", note.c_str());
+  for (const std::string& note : notes) std::printf("note        %s\n", printable(note).c_str());
   return Status::ok();
 }
 
 Status import(const CameraArguments& arguments) {
-  if (Status status = check_output_path("--out", arguments.out_path); !status) return status;
+  if (Status status = check_outputs({{"--out", arguments.out_path}}, {{"the file to import", arguments.path}}); !status) return status;
   std::vector<std::string> notes;
   const auto hints = hints_of(arguments, &notes);
   if (!hints) return hints.status();
@@ -132,8 +133,7 @@ Status list(const CameraArguments& arguments) {
     document[std::string(source.scheme) + "_problem"] = listing.problem;
     if (!listing.problem.empty()) append_text(&table, "%-32s %s\n", (std::string(source.scheme) + "://").c_str(), listing.problem.c_str());
   }
-  if (arguments.is_json) table = document.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
-  std::fputs(table.c_str(), stdout);
+  static_cast<void>(print_text(arguments.is_json ? json_text(document, 1) : table));
   if (!document["cameras"].empty()) return Status::ok();
   return {ErrorCode::kUnavailable, "no camera found; is it plugged in and powered? 'camloc doctor' looks closer"};
 }

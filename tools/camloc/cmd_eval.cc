@@ -156,15 +156,21 @@ Status eval_risk(const RiskArguments& arguments, const ReferencePose& reference,
   return Status::ok();
 }
 
-Status check_outputs(const EvalArguments& arguments) {
-  if (!arguments.png_path.empty()) {
-    if (Status status = check_output_path("--png", arguments.png_path); !status) return status;
-  }
-  return arguments.risk.png_path.empty() ? Status::ok() : check_output_path("--risk-png", arguments.risk.png_path);
+Status check_pictures(const EvalArguments& arguments) {
+  std::vector<NamedPath> outputs;
+  if (!arguments.png_path.empty()) outputs.push_back({"--png", arguments.png_path});
+  if (!arguments.risk.png_path.empty()) outputs.push_back({"--risk-png", arguments.risk.png_path});
+  return check_outputs(outputs, {{"--estimate", arguments.estimate_path},
+                                 {"--reference", arguments.reference_path},
+                                 {"--align-by", arguments.align_by_path},
+                                 {"--align-reference", arguments.align_reference_path},
+                                 {"--camera", arguments.camera_path},
+                                 {"--map", arguments.map_path},
+                                 {"--records", arguments.risk.records_path}});
 }
 
 Status eval(const EvalArguments& arguments) {
-  if (Status status = check_outputs(arguments); !status) return status;
+  if (Status status = check_pictures(arguments); !status) return status;
   auto estimate = read_trajectory(arguments.estimate_path);
   if (!estimate) return estimate.status();
   auto reference = read_reference(arguments, arguments.reference_path, arguments.frames, *estimate);

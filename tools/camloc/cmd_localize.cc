@@ -127,10 +127,9 @@ Status write_results(const LocalizeArguments& arguments, const SequenceRun& run,
 }
 
 Status localize(const LocalizeArguments& arguments) {
-  if (Status status = check_output_path("--out", arguments.out_path); !status) return status;
-  if (!arguments.json_path.empty()) {
-    if (Status status = check_output_path("--json", arguments.json_path); !status) return status;
-  }
+  std::vector<NamedPath> outputs{{"--out", arguments.out_path}};
+  if (!arguments.json_path.empty()) outputs.push_back({"--json", arguments.json_path});
+  if (Status status = check_outputs(outputs, inputs_of(arguments.run)); !status) return status;
   auto run = open_sequence_run(arguments.run);
   if (!run) return run.status();
 

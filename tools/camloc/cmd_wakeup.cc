@@ -112,7 +112,9 @@ Status draw(const WakeupArguments& arguments, const MapView& map, const std::vec
 
 Status wakeup(const WakeupArguments& arguments) {
   if (!arguments.png_path.empty()) {
-    if (Status status = check_output_path("--png", arguments.png_path); !status) return status;
+    std::vector<NamedPath> inputs = inputs_of(arguments.run);
+    inputs.push_back({"--reference", arguments.reference_path});
+    if (Status status = check_outputs({{"--png", arguments.png_path}}, inputs); !status) return status;
   }
   auto run = open_sequence_run(arguments.run);
   if (!run) return run.status();

@@ -3,11 +3,14 @@
 #include "tools/common/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <system_error>
 
+#include "core/io/file_bytes.h"
 #include "tools/common/text_format.h"
 
 namespace camloc::tools {
@@ -21,6 +24,39 @@ std::string chosen_command(const CLI::App& app) {
     name += " " + command->get_name();
   }
   return name;
+}
+
+Status check_one_output(const NamedPath& output) {
+  const auto& [option, path] = output;
+  std::error_code ignored;
+  if (path.empty()) return {ErrorCode::kInvalid, option + ": is empty; give a file name"};
+  if (std::filesystem::is_directory(path, ignored)) return {ErrorCode::kInvalid, option + " " + path + ": is a folder; give a file name"};
+  const auto folder = std::filesystem::path(path).parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
+    return {ErrorCode::kInvalid, option + " " + path + ": folder " + folder.string() + " does not exist; make it first"};
+  const Result<std::string> target = resolve_output(path);
+  return target ? Status::ok() : Status(ErrorCode::kInvalid, option + ": " + target.status().message());
+}
+
+/// "replay:///walk?speed=2" is /walk; empty for what is no file ("kinect://").
+std::string path_of_url(const std::string& text) {
+  const std::size_t scheme = text.find("://");
+  if (scheme == std::string::npos) return text;
+  return text.substr(scheme + 3, text.find('?', scheme) - scheme - 3);
+}
+
+/// An existing file anywhere below the folder `recording` that is named as recordings name theirs. Results of others may be there.
+bool is_recorded_file(const std::string& output, const std::string& recording) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (!fs::is_directory(recording, error) || !fs::exists(output, error)) return false;
+  const fs::path file = fs::canonical(output, error), folder = fs::canonical(recording, error);
+  if (std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first != folder.end()) return false;
+  const std::string name = file.filename().string(), extension = file.extension().string();
+  constexpr std::array<const char*, 5> kNames = {"rgb.txt", "depth.txt", "groundtruth.txt", "accelerometer.txt", "camera.toml"};
+  const bool is_image = extension == ".png" || extension == ".jpg" || extension == ".jpeg";
+  return std::find(kNames.begin(), kNames.end(), name) != kNames.end() || name.ends_with(".pose.txt") ||
+         (is_image && (file.parent_path() != folder || name.starts_with("frame-")));
 }
 
 }  // namespace
@@ -51,15 +87,37 @@ int report(const std::string& program, const Status& status) {
   return status.code() == ErrorCode::kInvalid ? 2 : 1;
 }
 
-bool print_text(const std::string& text) { return std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0; }
+bool print_text(const std::string& text) {
+  std::string shown;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    shown += printable(text.substr(begin, end - begin));
+    if (end < text.size()) shown += '\n';
+    begin = end + 1;
+  }
+  return std::fputs(shown.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+}
 
-Status check_output_path(const std::string& option, const std::string& path) {
-  std::error_code ignored;
-  if (path.empty()) return {ErrorCode::kInvalid, option + ": is empty; give a file name"};
-  if (std::filesystem::is_directory(path, ignored)) return {ErrorCode::kInvalid, option + " " + path + ": is a folder; give a file name"};
-  const auto folder = std::filesystem::path(path).parent_path();
-  if (folder.empty() || std::filesystem::is_directory(folder, ignored)) return Status::ok();
-  return {ErrorCode::kInvalid, option + " " + path + ": folder " + folder.string() + " does not exist; make it first"};
+Status check_output_path(const std::string& option, const std::string& path) { return check_outputs({{option, path}}, {}); }
+
+Status check_outputs(const std::vector<NamedPath>& outputs, const std::vector<NamedPath>& inputs) {
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const NamedPath& output = outputs[i];
+    if (Status status = check_one_output(output); !status) return status;
+    for (std::size_t other = 0; other < i; ++other) {
+      if (is_same_file(output.path, outputs[other].path))
+        return {ErrorCode::kInvalid, outputs[other].option + " and " + output.option + " name the same file, " + output.path};
+    }
+    for (const NamedPath& input : inputs) {
+      const std::string path = path_of_url(input.path);
+      if (path.empty()) continue;
+      if (is_same_file(output.path, path))
+        return {ErrorCode::kInvalid, output.option + " " + output.path + ": would replace the file of " + input.option};
+      if (is_recorded_file(output.path, path))
+        return {ErrorCode::kInvalid, output.option + " " + output.path + ": is a part of the recording of " + input.option};
+    }
+  }
+  return Status::ok();
 }
 
 }  // namespace camloc::tools

@@ -23,9 +23,10 @@ using Json = nlohmann::ordered_json;
   return rows;
 }
 
-/// The document with a line feed. Bytes that are no UTF-8, as file names may hold, are replaced.
+/// The document with a line feed, in ASCII: nothing in it drives a terminal. Bytes that are no UTF-8, as file names may hold, are
+/// replaced.
 [[nodiscard]] inline std::string json_text(const Json& json, int indent = 2) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(indent, ' ', true, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace camloc::tools

@@ -113,6 +113,10 @@ std::int64_t monotonic_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+std::vector<NamedPath> inputs_of(const SequenceRunOptions& options) {
+  return {{"--map", options.map_path}, {"--sequence", options.sequence_url}, {"--camera", options.camera_path}};
+}
+
 Result<SequenceRun> open_sequence_run(const SequenceRunOptions& options) {
   SequenceRun run;
   for (const std::string& text : options.perturbations) {

@@ -13,6 +13,7 @@
 #include "core/localize/localizer.h"
 #include "core/map/map_view.h"
 #include "drivers/frame_source.h"
+#include "tools/common/command_line.h"
 #include "tools/common/frame_reading.h"
 #include "tools/evaluation/coarse_asking.h"
 
@@ -43,6 +44,9 @@ struct SequenceRunOptions {
   std::string coarse_path;            ///< coarse model that is asked about lost frames, empty for none
   std::vector<std::string> numbers;   ///< "localizer.NAME=VALUE", for experiments
 };
+
+/// The files that a run reads, for check_outputs().
+[[nodiscard]] std::vector<NamedPath> inputs_of(const SequenceRunOptions& options);
 
 /// Map, camera and source, opened and checked against each other. Members are destroyed in reverse order.
 struct SequenceRun {

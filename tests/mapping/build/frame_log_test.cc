@@ -5,6 +5,7 @@
 #include "tools/mapping/build/frame_log.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <random>
@@ -197,6 +198,33 @@ TEST(ViewLog, WhatCannotBeWrittenIsAnErrorWithThePath) {
   if (status.is_ok()) status = full->flush();
   EXPECT_EQ(status.code(), ErrorCode::kIo);
   EXPECT_NE(status.message().find("disk full"), std::string::npos) << status.message();
+}
+
+TEST(ViewLog, OneBuildAtATimeHasIt) {
+  const TestFolder folder;
+  {
+    const auto lock = lock_frame_log(folder / "log");
+    ASSERT_TRUE(lock.is_ok()) << lock.status().message();
+    EXPECT_EQ(lock_frame_log(folder / "log").status().code(), ErrorCode::kUnavailable);
+    ASSERT_TRUE(FrameLogWriter::create(folder / "log", kIdentity).is_ok()) << "who has it writes";
+  }
+  EXPECT_TRUE(lock_frame_log(folder / "log").is_ok()) << "a log may be there";
+}
+
+TEST(ViewLog, WhatIsNoLogIsLeftAlone) {
+  const TestFolder folder;
+  const std::string victim = folder.write("victim", "precious");
+  std::filesystem::create_symlink("victim", folder / "link");
+  std::filesystem::create_hard_link(victim, folder / "hard");
+  EXPECT_EQ(lock_frame_log(victim).status().code(), ErrorCode::kInvalid);
+  EXPECT_EQ(lock_frame_log(folder / "link").status().code(), ErrorCode::kInvalid);
+  folder.write("empty", "");
+  std::filesystem::create_hard_link(folder / "empty", folder / "second");
+  EXPECT_EQ(lock_frame_log(folder / "empty").status().code(), ErrorCode::kInvalid) << "another name for somebody's file";
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  EXPECT_EQ(lock_frame_log(folder / "pipe").status().code(), ErrorCode::kInvalid);
+  EXPECT_FALSE(FrameLogWriter::create(folder / "link", kIdentity).is_ok());
+  EXPECT_EQ(std::filesystem::file_size(victim), 8U);
 }
 
 }  // namespace

@@ -77,5 +77,50 @@ TEST(OutputPathTest, AFileInAFolderThatIsThere) {
   }
 }
 
+/// The message of kInvalid, or what else it was.
+std::string refusal(const Status& status) {
+  if (status.is_ok()) return "fine";
+  return status.code() == ErrorCode::kInvalid ? status.message() : "another code: " + status.message();
+}
+
+TEST(OutputPathTest, NoOutputIsAnInputOrAnotherOutput) {
+  const TemporaryFolder folder;
+  const std::string map = folder.write("a.cmap", "x"), camera = folder.write("c.toml", "x");
+  std::filesystem::create_symlink("a.cmap", folder / "link");
+  const std::vector<NamedPath> inputs{{"--map", map}, {"--camera", camera}, {"--reference", ""}, {"--source", "kinect://"}};
+  EXPECT_EQ(refusal(check_outputs({{"--out", folder / "new"}, {"--json", folder / "other"}}, inputs)), "fine");
+  EXPECT_NE(refusal(check_outputs({{"--out", map}}, inputs)).find("would replace the file of --map"), std::string::npos);
+  EXPECT_NE(refusal(check_outputs({{"--out", folder / "link"}}, inputs)).find("would replace the file of --map"), std::string::npos);
+  EXPECT_NE(refusal(check_outputs({{"--out", folder / "new"}, {"--json", camera}}, inputs)).find("--json"), std::string::npos);
+  EXPECT_NE(
+      refusal(check_outputs({{"--out", folder / "new"}, {"--json", folder / "./new"}}, inputs)).find("--out and --json name the same"),
+      std::string::npos);
+}
+
+TEST(OutputPathTest, WhatARecordingIsMadeOfStays) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "walk/rgb");
+  const std::string list = folder.write("walk/rgb.txt", "x"), image = folder.write("walk/rgb/1.png", "x");
+  const std::string view = folder.write("walk/frame-000001.color.png", "x"), oni = folder.write("walk.oni", "x");
+  const std::string estimate = folder.write("walk/estimate.txt", "x"), picture = folder.write("walk/picture.png", "x");
+  for (const std::string& walk : {folder / "walk", "replay://" + (folder / "walk") + "?speed=2"}) {
+    for (const std::string& path : {list, image, view})
+      EXPECT_NE(refusal(check_outputs({{"--out", path}}, {{"--sequence", walk}})).find("recording of --sequence"), std::string::npos)
+          << path;
+    for (const std::string& path : {estimate, picture, folder / "walk/new.png"})
+      EXPECT_EQ(refusal(check_outputs({{"--out", path}}, {{"--sequence", walk}})), "fine") << path;
+  }
+  EXPECT_NE(refusal(check_outputs({{"--out", oni}}, {{"--sequence", "oni://" + oni}})), "fine");
+}
+
+TEST(OutputPathTest, DevicesAndLinksInASharedFolderAreRefused) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "shared");
+  std::filesystem::create_symlink("x", folder / "shared/link");
+  std::filesystem::permissions(folder / "shared", std::filesystem::perms(0770));
+  EXPECT_NE(refusal(check_output_path("--out", folder / "shared/link")).find("symbolic link"), std::string::npos);
+  EXPECT_NE(refusal(check_output_path("--out", "/dev/null")).find("device"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace camloc::tools

@@ -5,6 +5,10 @@
 #include "tools/mapping/build/frame_log.h"
 
 #define XXH_INLINE_ALL
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <xxhash.h>
 
 #include <array>
@@ -81,13 +85,44 @@ Status io_error(const std::string& path, const std::string& what) {
   return {ErrorCode::kIo, path + ": " + what + (error == 0 ? std::string() : std::string(": ") + std::strerror(error))};
 }
 
+/// Whether the file is empty or begins as a log does.
+bool may_be_log(int fd, const struct stat& info) {
+  std::array<char, 8> magic{};
+  return info.st_size == 0 || (::pread(fd, magic.data(), magic.size(), 0) == ssize_t{magic.size()} && magic == kMagic);
+}
+
+/// A stream on the file itself: a link that came in its place meanwhile is not followed.
+bool open_stream(const std::string& path, std::ios::openmode mode, std::ofstream* stream) {
+  const UniqueFd fd(::open(path.c_str(), O_WRONLY | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0644));
+  if (!fd.is_open()) return false;
+  stream->open("/proc/self/fd/" + std::to_string(fd.get()), std::ios::binary | mode);
+  return stream->is_open();
+}
+
 }  // namespace
+
+Result<UniqueFd> lock_frame_log(const std::string& path) {
+  errno = 0;
+  UniqueFd fd(::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0644));
+  if (!fd.is_open() && errno == ELOOP) return Status(ErrorCode::kInvalid, path + ": is a symbolic link, which is not followed; remove it");
+  if (!fd.is_open()) return io_error(path, "cannot be written");
+  struct stat info {
+  }, now{};
+  if (::fstat(fd.get(), &info) != 0) return io_error(path, "cannot be written");
+  if (!S_ISREG(info.st_mode) || info.st_nlink > 1 || !may_be_log(fd.get(), info))
+    return Status(ErrorCode::kInvalid, path + ": is something else than the views of a build; move it away");
+  // The one that had it may have removed it: then this is no longer the file at the path.
+  const bool is_ours = ::flock(fd.get(), LOCK_EX | LOCK_NB) == 0 && ::lstat(path.c_str(), &now) == 0 && now.st_ino == info.st_ino;
+  if (!is_ours)
+    return Status(ErrorCode::kUnavailable, path + ": another build of the same map is running; wait for it or take another --out");
+  return fd;
+}
 
 Result<FrameLogWriter> FrameLogWriter::create(const std::string& path, std::uint64_t identity) {
   FrameLogWriter writer;
   writer.path_ = path;
   errno = 0;
-  writer.file_.open(path, std::ios::binary | std::ios::trunc);
+  if (!open_stream(path, std::ios::trunc, &writer.file_)) return io_error(path, "cannot be written");
   LogHeader header;
   header.identity = identity;
   writer.file_.write(reinterpret_cast<const char*>(&header), sizeof header);
@@ -102,8 +137,7 @@ Result<FrameLogWriter> FrameLogWriter::append(const std::string& path, std::uint
   std::filesystem::resize_file(path, size_bytes, error);
   if (error) return Status(ErrorCode::kIo, path + ": cannot be written: " + error.message());
   errno = 0;
-  writer.file_.open(path, std::ios::binary | std::ios::app);
-  if (!writer.file_) return io_error(path, "cannot be written");
+  if (!open_stream(path, std::ios::app, &writer.file_)) return io_error(path, "cannot be written");
   return writer;
 }
 

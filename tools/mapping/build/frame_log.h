@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/base/result.h"
+#include "core/base/unique_fd.h"
 #include "core/dense/thumbnail.h"
 #include "core/registration/frame_features.h"
 
@@ -26,6 +27,11 @@ struct LoggedFrame {
   Thumbnail thumbnail;                     ///< may be empty
   std::vector<Eigen::Vector3f> surface_m;  ///< coarse sample of what the depth camera saw, in the camera frame
 };
+
+/// Makes the log of a build that build's own: whoever else asks is refused for as long as the descriptor is open. A log that is there
+/// stays as it is. Links are not followed: the folder of maps may be one that others write to.
+/// kUnavailable: another build has it; kInvalid: the path is something else than a log, which is left alone; kIo.
+[[nodiscard]] Result<UniqueFd> lock_frame_log(const std::string& path);
 
 /// Appends frames. Not thread-safe.
 class FrameLogWriter {

@@ -297,6 +297,8 @@ Status build_from_recording(const BuildRequest& request, WorkObserver& observer,
   auto prepared = prepare_recording(request, summary);
   if (!prepared.is_ok()) return prepared.status();
   TrackedRecording recording = std::move(prepared).value();
+  const auto log_lock = lock_frame_log(recording.pass.log_path);
+  if (!log_lock.is_ok()) return log_lock.status();
   summary->num_recorded = recording.frames.num_recorded;
   summary->num_selected = recording.frames.num_selected;
   {

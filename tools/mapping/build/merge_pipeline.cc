@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/mapping/build/merge_pipeline.h"
 
+#include <unistd.h>
+
 #include <chrono>
 #include <filesystem>
 
@@ -28,8 +30,8 @@ Status merge_into(const std::string& map_a, const MapData& b, const MapMergeOpti
   const auto merged = merge_maps(a.value(), b, options, observer, &summary->report);
   if (!merged.is_ok()) return merged.status().code() == ErrorCode::kUnavailable ? interrupted(map_path) : merged.status();
   if (a.value().is_damaged()) return {ErrorCode::kCorrupt, map_a + ": could not be read to its end; was it changed meanwhile?"};
-  // Beside the map, which stays what it was until the new one knows its look-alikes.
-  const std::string partial_path = map_path + ".partial";
+  // Beside the map, which stays what it was until the new one knows its look-alikes; two merges into one map do not share it.
+  const std::string partial_path = map_path + "." + std::to_string(::getpid()) + ".partial";
   Status written = write_map(merged.value(), partial_path);
   if (written.is_ok()) written = upgrade_map(partial_path, map_path, observer);
   std::error_code ignored;
