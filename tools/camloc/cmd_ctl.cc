@@ -31,7 +31,7 @@ void print_table(const nlohmann::ordered_json& object, const std::string& prefix
     if (value.is_object()) {
       print_table(value, prefix + key + ".");
     } else {
-      std::printf("%-26s %s\n", (prefix + key).c_str(), plain_text(value).c_str());
+      std::printf("%-26s %s\n", printable(prefix + key).c_str(), printable(plain_text(value)).c_str());
     }
   }
 }
@@ -42,7 +42,7 @@ int run(const CtlOptions& options) {
   if (!answer) return report(answer.status());
   const bool is_ok = answer->value("ok", false);
   if (options.is_json) {
-    std::printf("%s\n", answer->dump().c_str());
+    std::printf("%s\n", answer->dump(-1, ' ', true).c_str());
   } else if (!is_ok) {
     const std::string why = answer->contains("error") ? plain_text((*answer)["error"]) : "no reason given";
     return report({ErrorCode::kUnavailable, name + " refused: " + why});

@@ -17,6 +17,7 @@
 
 #include "tools/camloc/commands.h"
 #include "tools/common/program.h"
+#include "tools/common/text_format.h"
 #include "tools/doctor/doctor_checks.h"
 
 namespace camloc::tools {
@@ -88,8 +89,8 @@ std::vector<Check> examine(const DoctorOptions& options) {
 
 void print_text(const std::vector<Check>& checks) {
   for (const auto& check : checks) {
-    std::printf("%-4s  %-12s %s\n", to_string(check.level), check.name.c_str(), check.detail.c_str());
-    if (!check.advice.empty()) std::printf("                   -> %s\n", check.advice.c_str());
+    std::printf("%-4s  %-12s %s\n", to_string(check.level), check.name.c_str(), printable(check.detail).c_str());
+    if (!check.advice.empty()) std::printf("                   -> %s\n", printable(check.advice).c_str());
   }
 }
 
@@ -99,7 +100,7 @@ void print_json(const std::vector<Check>& checks, bool is_ok) {
     const char* level = check.level == Level::kFailure ? "fail" : to_string(check.level);
     document["checks"].push_back({{"name", check.name}, {"level", level}, {"detail", check.detail}, {"advice", check.advice}});
   }
-  std::printf("%s\n", document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  std::printf("%s\n", document.dump(2, ' ', true, nlohmann::json::error_handler_t::replace).c_str());
 }
 
 int run(const DoctorOptions& options) {

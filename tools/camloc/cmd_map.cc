@@ -11,6 +11,7 @@
 #include "core/geometry/wcs.h"
 #include "core/map/map_view.h"
 #include "tools/camloc/commands.h"
+#include "tools/common/command_line.h"
 #include "tools/common/json_text.h"
 #include "tools/common/text_format.h"
 #include "tools/evaluation/sequence_run.h"
@@ -95,20 +96,21 @@ void print_json(const MapView& map, double open_ms) {
                   {"T_wcs_map", datum_json(map)},
                   {"sections", sections_json(map)},
                   {"open_ms", open_ms}};
-  std::printf("%s\n", json.dump(1).c_str());
+  static_cast<void>(print_text(json_text(json, 1)));
 }
 
 /// What is in the map and nobody here can use.
 void print_skipped(const MapView& map) {
   for (const MapSection& section : map.sections()) {
     if (section.kind == nullptr)
-      std::printf("skipped      section %s, %zu bytes: optional, made by a newer camloc\n", section.name.c_str(), section.bytes.size());
+      std::printf("skipped      section %s, %zu bytes: optional, made by a newer camloc\n", printable(section.name).c_str(),
+                  section.bytes.size());
   }
 }
 
 void print_table(const MapView& map, double open_ms) {
   const MapInfo& info = map.info();
-  std::printf("map          %s%s%s\n", info.path.c_str(), info.name.empty() ? "" : ", ", info.name.c_str());
+  std::printf("map          %s%s%s\n", info.path.c_str(), info.name.empty() ? "" : ", ", printable(info.name).c_str());
   std::printf("id           %016llx, format version %u\n", llu(info.map_id), info.version);
   std::printf("size         %.3f MB, %.1f bytes a landmark, opened in %.2f ms\n", 1e-6 * static_cast<double>(info.file_bytes),
               bytes_per_landmark(info), open_ms);
@@ -125,7 +127,7 @@ void print_table(const MapView& map, double open_ms) {
   else
     std::printf("look-alikes  %zu places that another one could be taken for\n",
                 map.section(map_format::kRivals).size() / sizeof(map_format::RivalRecord));
-  std::printf("camera       %s\n", info.camera.name.c_str());
+  std::printf("camera       %s\n", printable(info.camera.name).c_str());
   print_datum(map);
   print_skipped(map);
 }

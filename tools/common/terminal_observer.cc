@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "tools/common/text_format.h"
+
 namespace camloc::tools {
 namespace {
 
@@ -60,7 +62,7 @@ void ProgressLine::show(std::uint64_t step, const std::string& note) {
 
 void ProgressLine::say(const std::string& text) const {
   if (!is_terminal_) return;
-  std::fprintf(stderr, "\r\033[K%s", text.c_str());
+  std::fprintf(stderr, "\r\033[K%s", printable(text).c_str());
   std::fflush(stderr);
 }
 
