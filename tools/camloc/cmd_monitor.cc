@@ -11,12 +11,14 @@
 #include <lcm/lcm-cpp.hpp>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "tools/camloc/commands.h"
 #include "tools/common/terminal_observer.h"
 #include "tools/doctor/doctor_checks.h"
 #include "tools/monitor/map_sketch.h"
+#include "tools/monitor/message_layout.h"
 #include "tools/monitor/monitor_view.h"
 
 namespace camloc::tools {
@@ -42,6 +44,10 @@ constexpr const char* kHints =
 
 double seconds_between(Clock::time_point from, Clock::time_point to) { return std::chrono::duration<double>(to - from).count(); }
 
+std::span<const std::uint8_t> bytes_of(const lcm::ReceiveBuffer* buffer) {
+  return {static_cast<const std::uint8_t*>(buffer->data), buffer->data_size};
+}
+
 /// Receives and shows. Not thread-safe; LCM calls back from handleTimeout only.
 class Monitor {
  public:
@@ -50,7 +56,7 @@ class Monitor {
 
   void on_pose(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
     pose_t pose;
-    if (pose.decode(buffer->data, 0, static_cast<int>(buffer->data_size)) < 0) return refuse(channel);
+    if (!decode_message(bytes_of(buffer), kPoseLayout, &pose)) return refuse(channel);
     const auto now = Clock::now();
     arrivals_.push_back(now);
     while (seconds_between(arrivals_.front(), now) > 2) arrivals_.pop_front();
@@ -67,7 +73,7 @@ class Monitor {
 
   void on_status(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
     status_t status;
-    if (status.decode(buffer->data, 0, static_cast<int>(buffer->data_size)) < 0) return refuse(channel);
+    if (!decode_message(bytes_of(buffer), kStatusLayout, &status)) return refuse(channel);
     const bool is_news = !state_.status || state_.status->state != status.state || state_.status->map_id != status.map_id ||
                          state_.status->is_calibration_suspect != status.is_calibration_suspect ||
                          state_.status->camera_state != status.camera_state;
@@ -97,7 +103,7 @@ class Monitor {
 
  private:
   /// Text from a message may be no UTF-8.
-  static std::string dump(const nlohmann::json& record) { return record.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace); }
+  static std::string dump(const nlohmann::json& record) { return record.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace); }
 
   /// Where in the map, if the daemon's map can be read here and is the one it has open.
   std::string sketch() {
