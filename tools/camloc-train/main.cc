@@ -65,9 +65,11 @@ Status complete(TrainArguments* arguments) {
     return {ErrorCode::kInvalid, "--freeze keeps the weights of --init FILE; without them there is nothing to keep"};
   if (!arguments->poses.empty() && arguments->poses.size() != 1 && arguments->poses.size() != arguments->sequences.size())
     return {ErrorCode::kInvalid, "give --poses once for all, or once for each --sequence"};
-  for (const auto& [option, path] : {std::pair{"--out", arguments->out_path}, {"--out", arguments->curves_path()}})
-    if (Status status = tools::check_output_path(option, path); !status) return status;
-  return Status::ok();
+  std::vector<tools::NamedPath> inputs{{"--map", arguments->map_path}, {"--camera", arguments->camera_path}};
+  if (!arguments->init_path.empty()) inputs.push_back({"--init", arguments->init_path});
+  return tools::check_outputs(
+      {{"--out", arguments->out_path}, {"the learning curves", arguments->curves_path()}, {"the checkpoint", arguments->checkpoint_path()}},
+      inputs);
 }
 
 /// The network sees the whole image, bar what turning it a little takes.
