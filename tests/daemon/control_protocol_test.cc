@@ -64,8 +64,8 @@ TEST(ControlProtocolTest, StatusNamesEveryField) {
   for (const char* part :
        {"\"ok\":true", "\"state\":\"LOCALIZED\"", "\"state_text\":\"fine\"", "\"map_id\":\"ffffffffffffffff\"",
         "\"frames_received\":9223372036854775807", "\"latency_p50_ms\":1.25", "\"focal_scale\":null", "\"is_calibration_suspect\":false",
-         "\"source\":\"\"", "\"uptime_us\":0", "\"coarse_state\":\"off\"", "\"coarse_answers\":0", "\"fixes_by_hint\":0",
-         "\"fixes_by_retrieval\":0", "\"fixes_by_coarse\":0", "\"rss_bytes\":0", "\"log_lines_lost\":0"}) {
+        "\"source\":\"\"", "\"uptime_us\":0", "\"coarse_state\":\"off\"", "\"coarse_answers\":0", "\"fixes_by_hint\":0",
+        "\"fixes_by_retrieval\":0", "\"fixes_by_coarse\":0", "\"rss_bytes\":0", "\"log_lines_lost\":0"}) {
     EXPECT_NE(reply.find(part), std::string::npos) << part << " not in " << reply;
   }
 }
