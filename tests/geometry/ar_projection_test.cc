@@ -20,7 +20,7 @@ Rigid3 random_pose(std::mt19937_64* random) {
   return {exp_so3({turn(*random), turn(*random), turn(*random)}), {metre(*random), metre(*random), metre(*random)}};
 }
 
-class ArProjection : public testing::TestWithParam<const char*> {
+class ArProjection : public ::testing::TestWithParam<const char*> {
  protected:
   const EngineConvention& engine_ = *find_engine(GetParam());
 };
@@ -64,7 +64,7 @@ TEST_P(ArProjection, TheViewKeepsLengthsAndItsHandedness) {
   const double expected = engine_.R_eye_camera.determinant() * engine_.R_world_map.determinant();
   EXPECT_NEAR(R.determinant(), expected, 1e-12);
 }
-INSTANTIATE_TEST_SUITE_P(Engines, ArProjection, testing::Values("opengl", "webxr", "vulkan", "direct3d", "irrlicht", "unity", "unreal"),
+INSTANTIATE_TEST_SUITE_P(Engines, ArProjection, ::testing::Values("opengl", "webxr", "vulkan", "direct3d", "irrlicht", "unity", "unreal"),
                          [](const auto& of) { return std::string(of.param); });
 
 // The formulas of the OpenGL frustum (glFrustum), written out by hand.
