@@ -77,6 +77,7 @@ Result<std::vector<std::string>> drop_ins(const std::string& folder) {
 
 Status merge_file(const std::string& path, const std::string& folder, Config* config) {
   std::error_code ignored;
+  if (path == "/dev/null") return Status::ok();  // how people say that there is no file
   if (std::filesystem::is_directory(path, ignored)) return {ErrorCode::kIo, "cannot read configuration " + path + ": it is a folder"};
   const Result<std::string> text = read_file_text(path, kMaxFileBytes);  // regular files only: a named pipe would wait for a writer
   return text ? parse_config(*text, path, config, folder) : text.status().with_context("cannot read configuration");

@@ -48,6 +48,12 @@ TEST(ConfigTest, ShippedFileIsTheTable) {
   EXPECT_EQ(text, format_config(Config())) << "write it anew: camlocd --config /dev/null --print-config > config/camlocd.toml";
 }
 
+TEST(ConfigTest, NoFileIsWrittenAsDevNull) {
+  const auto config = load_config("/dev/null", {});
+  ASSERT_TRUE(config.is_ok()) << config.status().message();
+  EXPECT_EQ(format_config(*config), format_config(Config()));
+}
+
 TEST(ConfigTest, PrintedConfigParsesBack) {
   Config config;
   config.source_url = "replay:///a\"b\\c?speed=1";

@@ -82,7 +82,8 @@ class ColmapPosesTest : public ::testing::Test {
   }
   Result<PosedFrames> find(PoseCamera pose_camera = PoseCamera::kAuto) {
     EXPECT_TRUE(write_colmap_model(model_, folder_.file("model"), "test").is_ok());
-    return find_posed_frames({folder_.path().string(), "colmap:" + folder_.file("model"), "", "", pose_camera}, camera_);
+    return find_posed_frames({.sequence = folder_.path().string(), .poses = "colmap:" + folder_.file("model"), .pose_camera = pose_camera},
+                             camera_);
   }
   void expect_error(const std::string& part) {
     const auto frames = find();
