@@ -48,9 +48,11 @@ weigh camloc 17 25 "$(deb_of camloc)"
 ! grep -iE "$unwanted" <<<"$added" || fail "camloc brings the above with it"
 weigh camloc-tools 75 100 "$(deb_of camloc-tools)"
 ! grep -iE "$unwanted" <<<"$added" || fail "camloc-tools brings the above with it"
-for package in camloc-bench camloc-calibration camloc-training camloc-coarse; do
+for package in camloc-bench camloc-calibration camloc-coarse; do
   if [[ -e $root$(deb_of $package) ]]; then weigh $package 220 600 "$(deb_of $package)"; fi
 done
+# Debian's libtorch comes with OpenCV's video modules and what those want.
+if [[ -e $root$(deb_of camloc-training) ]]; then weigh camloc-training 340 950 "$(deb_of camloc-training)"; fi
 # shellcheck disable=SC2046 # words
 weigh tools/demo 190 800 $("$source_folder/tools/install-deps" --list)
 # With systemd in the same breath it is systemd that makes the user and the folders.
