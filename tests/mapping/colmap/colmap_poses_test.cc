@@ -4,6 +4,7 @@
 // A recording with depth and a COLMAP model of its images in another scale and frame: the poses come out in metres.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "core/io/image_writer.h"
@@ -113,9 +114,16 @@ TEST_F(ColmapPosesTest, PosesComeOutInMetres) {
   }
 }
 
-TEST_F(ColmapPosesTest, AnImageThatTheRecordingDoesNotHaveIsNamed) {
+TEST_F(ColmapPosesTest, AnImageThatTheRecordingDoesNotHaveIsLeftOutAndNamed) {
+  const auto whole = find();
+  ASSERT_TRUE(whole.is_ok()) << whole.status().message();
   model_.images[2].name = "other.png";
-  expect_error("'other.png'");
+  const auto frames = find();
+  ASSERT_TRUE(frames.is_ok()) << frames.status().message();
+  EXPECT_EQ(frames->T_map_camera_of_frame.size() + 1, whole->T_map_camera_of_frame.size());
+  const bool is_named = std::any_of(frames->notes.begin(), frames->notes.end(),
+                                    [](const std::string& note) { return note.find("other.png") != std::string::npos; });
+  EXPECT_TRUE(is_named);
 }
 
 TEST_F(ColmapPosesTest, TwoImagesOfOneFrameAreNamed) {

@@ -87,7 +87,9 @@ Result<Selection> select(const PosedFramesRequest& request) {
 }  // namespace
 
 std::string recording_url(const PosedFramesRequest& request, const std::string& folder, const std::vector<std::uint64_t>& frames) {
-  return replay_url(folder) + "?pair_ms=" + tools::text_of("%.3f", request.pair_ms) + "&frames=" + slices_of(frames);
+  const bool is_usual = request.pair_ms == PosedFramesRequest{}.pair_ms;
+  const std::string pairing = is_usual ? "" : tools::text_of("pair_ms=%.3f&", request.pair_ms);
+  return replay_url(folder) + "?" + pairing + "frames=" + slices_of(frames);
 }
 
 Result<SelectedFrames> find_frames(const PosedFramesRequest& request) {
