@@ -22,11 +22,9 @@ struct Distorted {
   Eigen::Matrix2d jacobian;
 };
 
-Distorted distort_brown_conrady(const Coefficients& k, const Eigen::Vector2d& n) {
-  const double k1 = k[0], k2 = k[1], p1 = k[2], p2 = k[3], k3 = k[4];
+/// `radial_by_r2` is the derivative of the radial factor by r^2.
+Distorted radial_and_tangential(double p1, double p2, const Eigen::Vector2d& n, double radial, double radial_by_r2) {
   const double x = n.x(), y = n.y(), r2 = x * x + y * y;
-  const double radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
-  const double radial_by_r2 = k1 + r2 * (2.0 * k2 + r2 * 3.0 * k3);
   Distorted d;
   d.point.x() = x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x);
   d.point.y() = y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y;
@@ -37,21 +35,22 @@ Distorted distort_brown_conrady(const Coefficients& k, const Eigen::Vector2d& n)
   return d;
 }
 
+Distorted distort_brown_conrady(const Coefficients& k, const Eigen::Vector2d& n) {
+  const double k1 = k[0], k2 = k[1], k3 = k[4];
+  const double r2 = n.x() * n.x() + n.y() * n.y();
+  const double radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+  const double radial_by_r2 = k1 + r2 * (2.0 * k2 + r2 * 3.0 * k3);
+  return radial_and_tangential(k[2], k[3], n, radial, radial_by_r2);
+}
+
 Distorted distort_rational(const Coefficients& k, const Eigen::Vector2d& n) {
-  const auto [k1, k2, p1, p2, k3, k4, k5, k6] = k;
-  const double x = n.x(), y = n.y(), r2 = x * x + y * y;
+  const double k1 = k[0], k2 = k[1], k3 = k[4], k4 = k[5], k5 = k[6], k6 = k[7];
+  const double r2 = n.x() * n.x() + n.y() * n.y();
   const double above = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3)), below = 1.0 + r2 * (k4 + r2 * (k5 + r2 * k6));
   const double above_by_r2 = k1 + r2 * (2.0 * k2 + r2 * 3.0 * k3), below_by_r2 = k4 + r2 * (2.0 * k5 + r2 * 3.0 * k6);
   const double radial = above / below;
   const double radial_by_r2 = (above_by_r2 - radial * below_by_r2) / below;
-  Distorted d;
-  d.point.x() = x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x);
-  d.point.y() = y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y;
-  d.jacobian(0, 0) = radial + 2.0 * x * x * radial_by_r2 + 2.0 * p1 * y + 6.0 * p2 * x;
-  d.jacobian(0, 1) = 2.0 * x * y * radial_by_r2 + 2.0 * p1 * x + 2.0 * p2 * y;
-  d.jacobian(1, 0) = d.jacobian(0, 1);
-  d.jacobian(1, 1) = radial + 2.0 * y * y * radial_by_r2 + 6.0 * p1 * y + 2.0 * p2 * x;
-  return d;
+  return radial_and_tangential(k[2], k[3], n, radial, radial_by_r2);
 }
 
 double equidistant_angle(const Coefficients& k, double theta) {

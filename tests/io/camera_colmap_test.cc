@@ -3,22 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "core/io/camera_file.h"
+#include "tests/io/camera_texts.h"
 
 namespace camloc {
 namespace {
-
-RgbdCamera parsed(const std::string& text, std::vector<std::string>* notes = nullptr) {
-  const auto camera = parse_camera(text, "dir/camera", {0, 0, notes});
-  EXPECT_TRUE(camera.is_ok()) << camera.status().message();
-  return camera ? *camera : RgbdCamera{};
-}
-
-void expect_error(const std::string& text, const std::string& part) {
-  const auto camera = parse_camera(text, "dir/camera");
-  ASSERT_FALSE(camera.is_ok()) << text;
-  EXPECT_NE(camera.status().message().find(part), std::string::npos) << camera.status().message();
-  EXPECT_EQ(camera.status().message().find('\n'), std::string::npos);
-}
 
 TEST(CameraColmap, UsualModelsHalfAPixelLess) {
   const Intrinsics opencv = parsed("# Camera list\n1 OPENCV 640 480 524.1 523.5 317.9 244.6 0.21 -0.59 0.0012 -0.0008\n").color;

@@ -9,20 +9,10 @@
 #include <tuple>
 
 #include "tests/drivers/test_folder.h"
+#include "tests/io/sequence_checks.h"
 
 namespace camloc {
 namespace {
-
-void expect_error(const Result<Sequence>& result, ErrorCode code, const std::string& part) {
-  ASSERT_FALSE(result.is_ok());
-  EXPECT_EQ(result.status().code(), code) << result.status().message();
-  EXPECT_NE(result.status().message().find(part), std::string::npos) << result.status().message();
-}
-
-/// Image files are only looked for, not opened.
-void touch(const TestFolder& folder, std::initializer_list<const char*> names) {
-  for (const char* name : names) folder.write(name, "x");
-}
 
 TEST(Sequence, TumWithDepthByNearestStamp) {
   const TestFolder folder;

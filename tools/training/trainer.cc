@@ -21,6 +21,7 @@
 #include <utility>
 
 #include "core/base/mix_bits.h"
+#include "core/base/order_statistics.h"
 #include "core/io/file_bytes.h"
 #include "tools/common/text_format.h"
 #include "tools/training/onnx_export.h"
@@ -197,20 +198,16 @@ struct Trainer::State {
     return {Eigen::Quaterniond(v[3], v[4], v[5], v[6]).normalized(), scale.mean_m + scale.deviation_m * position};
   }
 
-  static HeldOutError summary_of(std::vector<double> metres, std::vector<double> radians) {
+  static HeldOutError summary_of(const std::vector<double>& metres, const std::vector<double>& radians) {
     constexpr double kDegrees = 180 / M_PI;
     const auto count = static_cast<double>(metres.size());
     const auto mean = [&](const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0) / count; };
     const auto rms = [&](const std::vector<double>& v) {
       return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0) / count);
     };
-    const auto median = [](std::vector<double>& v) {
-      std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-      return v[v.size() / 2];
-    };
     HeldOutError error{.mean_m = mean(metres), .mean_deg = kDegrees * mean(radians), .rms_m = rms(metres), .rms_rad = rms(radians)};
-    error.median_m = median(metres);
-    error.median_deg = kDegrees * median(radians);
+    error.median_m = upper_median(metres);
+    error.median_deg = kDegrees * upper_median(radians);
     return error;
   }
 
